@@ -1,0 +1,30 @@
+#pragma once
+
+#include <atomic>
+
+namespace trimquad {
+
+/// Progress of one conversion, shared between the thread that works and the one that watches.
+/// The working thread calls `report` and `check`; any thread may call `cancel` and read `fraction`.
+class Progress {
+ public:
+  /// Stop at the next `check`.
+  void cancel() { cancelled_ = true; }
+  bool cancelled() const { return cancelled_; }
+
+  /// Part of the running stage that is done, in [0, 1].
+  double fraction() const { return fraction_; }
+  void report(double fraction) {
+    fraction_ = fraction;
+    check();
+  }
+
+  /// Throws Error(Cancelled) once `cancel` was called. Call it in every loop that can last over 0.1 s.
+  void check() const;
+
+ private:
+  std::atomic<bool> cancelled_{false};
+  std::atomic<double> fraction_{0};
+};
+
+}  // namespace trimquad

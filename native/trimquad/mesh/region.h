@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trimquad/mesh/surface_mesh.h"
+#include "trimquad/mesh/true_surface.h"
+
+namespace trimquad {
+
+struct CurveId {
+  int index;
+  friend auto operator<=>(CurveId, CurveId) = default;
+};
+struct CornerId {
+  int index;
+  friend auto operator<=>(CornerId, CornerId) = default;
+};
+
+/// One piece of a model that gets a map, a quad mesh and trimmed surfaces of its own: a CAD model is cut into
+/// regions along its sharp edges, a mesh into its components. Outward orientation.
+struct Region {
+  std::string name;
+  SurfaceMesh mesh;
+
+  /// The surface behind the triangles; null where the triangles themselves are the surface.
+  std::shared_ptr<const TrueSurface> surface;
+
+  /// Per mesh edge (by index): the model's curve that a boundary edge lies on. Every boundary edge has one.
+  std::vector<std::optional<CurveId>> edgeCurve;
+  /// Per vertex: the parameter on its curve where it lies inside one.
+  std::vector<double> curveParameter;
+  /// Per vertex: the model's corner that it is, where it ends a curve (a CAD vertex that regions share).
+  std::vector<std::optional<CornerId>> corner;
+};
+
+/// A curve of a model, from corner to corner. A closed curve starts and ends in the same corner.
+struct ModelCurve {
+  std::shared_ptr<const TrueCurve> curve;
+  CornerId start, end;
+  std::string name;  ///< "Edge3" for a CAD edge, "loop:2" for a boundary loop of a mesh
+};
+
+/// A whole input, cut into regions. Curves and corners are shared: where two regions meet, the vertices of both
+/// along the curve are at the same places in the same number.
+struct Model {
+  std::vector<Region> regions;
+  std::vector<ModelCurve> curves;             ///< by CurveId
+  std::vector<Eigen::Vector3d> corners;       ///< by CornerId
+  struct Shell {
+    std::vector<int> regions;
+    std::optional<int> solid;                 ///< which solid of the input the shell bounds
+  };
+  std::vector<Shell> shells;
+  double diagonal = 0;                        ///< of the bounding box, model units
+};
+
+}  // namespace trimquad

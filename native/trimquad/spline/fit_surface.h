@@ -1,0 +1,29 @@
+#pragma once
+
+#include "trimquad/base/progress.h"
+#include "trimquad/mesh/region.h"
+#include "trimquad/spline/chart.h"
+#include "trimquad/spline/spline_geometry.h"
+
+namespace trimquad {
+
+struct FitOptions {
+  double tolerance = 1e-3;  ///< largest distance between surface and region, model units
+  int degree = 3;           ///< 2..5
+};
+
+/// A B-spline surface through one region, not trimmed yet.
+struct FittedSurface {
+  Chart chart;
+  SplineSurface surface;
+  double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
+  int rounds = 0;
+};
+
+/// Least-squares fit with parameter correction, knots refined only where the deviation exceeds the tolerance.
+/// The domain is a rectangle of whole quads that holds the region's image with room on every side (except around a
+/// closed direction). Throws Error(Stage, "fit") where the tolerance cannot be met, with the deviation reached.
+FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOptions& options,
+                         const Progress& progress);
+
+}  // namespace trimquad

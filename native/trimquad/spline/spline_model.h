@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "trimquad/spline/spline_geometry.h"
+
+namespace trimquad {
+
+struct SplineVertexId {
+  int index;
+  friend auto operator<=>(SplineVertexId, SplineVertexId) = default;
+};
+struct SplineEdgeId {
+  int index;
+  friend auto operator<=>(SplineEdgeId, SplineEdgeId) = default;
+};
+
+struct SplineVertex {
+  Eigen::Vector3d point;
+  double tolerance;  ///< measured, model units, at least 1e-7
+};
+
+/// An edge from corner to corner, on the whole range of its curve. Closed loops consist of two edges or more.
+struct SplineEdge {
+  SpaceCurve curve;
+  SplineVertexId start, end;
+  double tolerance;  ///< largest distance to the surfaces' curves, measured, at least 1e-7
+};
+
+/// The use of an edge by a face: its curve in the face's parameter plane, with the edge's own parameter, same range.
+struct SplineCoedge {
+  SplineEdgeId edge;
+  bool forward;  ///< whether the loop runs along the edge's direction
+  PlaneCurve curve;
+};
+
+/// A trimmed surface. The outer loop comes first and runs counter-clockwise in the parameter plane, the others
+/// clockwise. A seam edge of a closed surface occurs twice in the loop, once in each direction.
+struct SplineFace {
+  SplineSurface surface;
+  std::vector<std::vector<SplineCoedge>> loops;
+  int region;
+};
+
+/// Trimmed B-spline faces that share their edges: what a region, or a whole model, is rebuilt as.
+struct SplineModel {
+  std::vector<SplineVertex> vertices;
+  std::vector<SplineEdge> edges;
+  std::vector<SplineFace> faces;
+  struct Shell {
+    std::vector<int> faces;
+    std::optional<int> solid;  ///< which solid the (closed) shell bounds
+  };
+  std::vector<Shell> shells;
+};
+
+}  // namespace trimquad
