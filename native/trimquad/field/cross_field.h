@@ -14,6 +14,9 @@ struct CrossField {
   /// turns by matching * 90 degrees from direction[f] to direction[g] when crossing h from f to g. Interior edges only.
   std::vector<int> matching;
   std::vector<int> index;                  ///< by vertex index: singularity index in quarter turns
+  /// Per boundary loop (in the order of boundaryLoops) how many full turns it makes against the field: 1 for an outer
+  /// loop, -1 for a hole, 0 for an end of a tube.
+  std::vector<int> loopTurns;
 };
 
 /// The smoothest field without singularities, following principal curvature where it is distinct.

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "trimquad/field/transport.h"
+#include "trimquad/mesh/surface_mesh.h"
+
+namespace trimquad {
+
+/// The boundary loops of a genus-0 region and how fields without singularities can differ around them.
+///
+/// A singularity-free field is settled up to deformation by how often each loop turns against it: full turns, +1 for
+/// the outer loop of a plane region, -1 for a hole in it, 0 for either end of a tube. The turns of all loops add up to
+/// the Euler characteristic. A generator is a function on halfedges, +1 or -1 where an edge of one path between two loops is
+/// crossed: adding a full turn to the field there changes the turns of loops, and of nothing else.
+struct LoopTurning {
+  std::vector<std::vector<HalfedgeHandle>> loops;  ///< as boundaryLoops
+  std::vector<int> turns;                          ///< per loop, of the field with angle 0 and no generator
+  /// Per generator (one less than loops): the halfedges that cross its path from its right to its left.
+  std::vector<std::vector<HalfedgeHandle>> paths;
+  /// effect[generator][loop]: what one full turn added at the generator's crossings adds to the loop's turns.
+  std::vector<std::vector<int>> effect;
+};
+
+LoopTurning loopTurning(const SurfaceMesh& mesh, const Transport& transport);
+
+/// Per generator the number of full turns that give the loops the turns `wanted` (their sum must be right).
+std::vector<int> generatorTurns(const LoopTurning& turning, const std::vector<int>& wanted);
+
+}  // namespace trimquad
