@@ -1,0 +1,139 @@
+"""The options of a conversion, the same for the command line, scripts and the GUI."""
+import dataclasses
+import math
+from typing import List, Optional
+
+from .error import input_error
+
+FILE_KINDS = ("seamless", "tmesh", "gridmap", "quads", "nurbs", "texture", "report", "fcstd", "pictures")
+DEFAULT_QUADS = 1000
+MOST_QUADS = 2_000_000
+
+
+@dataclasses.dataclass
+class Options:
+    """Every option of a conversion with its default. Lengths are in the input's unit (mm for CAD).
+
+    None means: `edge_length` from `quads`; `quads` 1000 where there is no edge length; `features` 'trim' for CAD and
+    'ignore' for meshes; `tolerance` from `relative_tolerance`; `threads` as many as there are cores.
+    """
+
+    edge_length: Optional[float] = None
+    quads: Optional[int] = None
+    boundary: str = "free"
+    align: List[str] = dataclasses.field(default_factory=list)
+    free: List[str] = dataclasses.field(default_factory=list)
+    features: Optional[str] = None
+    feature_angle: float = 30.0
+    feature_points: List[str] = dataclasses.field(default_factory=list)
+    field: str = "curvature"
+    fill_holes: float = 0.0
+    optimal: bool = False
+    tolerance: Optional[float] = None
+    relative_tolerance: Optional[float] = None
+    route: str = "auto"
+    degree: int = 3
+    write: List[str] = dataclasses.field(default_factory=lambda: ["gridmap", "quads", "nurbs", "report"])
+    threads: Optional[int] = None
+
+    def validate(self):
+        """Raises Error(input) with one line for the first option that is unusable or not in this version."""
+        for name in ("edge_length", "tolerance", "relative_tolerance"):
+            value = getattr(self, name)
+            if value is not None and not (_is_number(value) and value > 0):
+                raise _refused(name, f"must be a positive number, not {value}")
+        if self.edge_length is not None and self.quads is not None:
+            raise _refused("edge_length", "and --quads are two ways to say the same; give one of them")
+        if self.tolerance is not None and self.relative_tolerance is not None:
+            raise _refused("tolerance", "and --relative-tolerance are two ways to say the same; give one of them")
+        if self.relative_tolerance is not None and self.relative_tolerance > 0.1:
+            raise _refused("relative_tolerance", f"is a fraction of the diagonal, at most 0.1, not {self.relative_tolerance}")
+        for name, least, most in (("quads", 1, MOST_QUADS), ("degree", 2, 5), ("threads", 1, 1024)):
+            value = getattr(self, name)
+            if value is not None and not (_is_whole(value) and least <= value <= most):
+                raise _refused(name, f"must be a whole number from {least} to {most}, not {value}")
+        if not (_is_number(self.feature_angle) and 0 < self.feature_angle < 180):
+            raise _refused("feature_angle", f"must be between 0 and 180 degrees, not {self.feature_angle}")
+        if not (_is_number(self.fill_holes) and self.fill_holes >= 0):
+            raise _refused("fill_holes", f"must be a length of 0 or more, not {self.fill_holes}")
+        for name, known in (
+            ("boundary", ("free", "aligned")),
+            ("features", (None, "trim", "align", "ignore")),
+            ("route", ("auto", "direct", "reembed")),
+        ):
+            if getattr(self, name) not in known:
+                names = ", ".join(x for x in known if x)
+                raise _refused(name, f"must be one of {names}, not '{getattr(self, name)}'")
+        for kind in self.write:
+            if kind not in FILE_KINDS:
+                raise _refused("write", f"knows {', '.join(FILE_KINDS)}, not '{kind}'")
+        if not self.write:
+            raise _refused("write", f"needs at least one of {', '.join(FILE_KINDS)}")
+        self._refuse_missing_stages()
+
+    def _refuse_missing_stages(self):
+        for given, what in (
+            (self.boundary == "aligned", "--boundary aligned"),
+            (bool(self.align), "--align"),
+            (bool(self.free), "--free"),
+            (self.features == "align", "--features align"),
+            (bool(self.feature_points), "--feature-points"),
+            (self.field != "curvature", f"--field {self.field}"),
+            (self.fill_holes > 0, "--fill-holes"),
+            (self.optimal, "--optimal"),
+            (self.route == "reembed", "--route reembed"),
+            ("tmesh" in self.write, "--write tmesh"),
+            ("texture" in self.write, "--write texture"),
+        ):
+            if given:
+                raise input_error("options", f"{what} is not in this version yet; leave it out")
+
+    def resolved(self, kind, area, diagonal, default_threads):
+        """A copy with every None replaced, for an input of `kind` ('cad' or 'mesh') of that area and diagonal.
+
+        Raises Error(input) where the edge length does not fit the input.
+        """
+        options = dataclasses.replace(self)
+        if options.edge_length is None:
+            options.quads = options.quads or DEFAULT_QUADS
+            options.edge_length = math.sqrt(area / options.quads)
+        if options.edge_length > diagonal:
+            raise _refused(
+                "edge_length", f"{options.edge_length:.6g} is larger than the part, whose diagonal is {diagonal:.6g}"
+            )
+        count = area / options.edge_length**2
+        if count > MOST_QUADS:
+            least = math.sqrt(area / MOST_QUADS)
+            raise _refused(
+                "edge_length",
+                f"{options.edge_length:.6g} would give about {count:.3g} quads, more than the limit of {MOST_QUADS}; "
+                f"use {least:.3g} or more",
+            )
+        if count < 1:
+            raise _refused(
+                "edge_length",
+                f"{options.edge_length:.6g} would give no whole quad (about {count:.2g}); "
+                f"use {math.sqrt(area):.3g} or less",
+            )
+        if options.quads is None:
+            options.quads = max(1, round(count))
+        options.features = options.features or ("trim" if kind == "cad" else "ignore")
+        if options.tolerance is None:
+            options.relative_tolerance = options.relative_tolerance or 1e-3
+            options.tolerance = options.relative_tolerance * diagonal
+        else:
+            options.relative_tolerance = options.tolerance / diagonal
+        options.threads = options.threads or default_threads
+        return options
+
+
+def _is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _is_whole(value):
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _refused(name, reason):
+    return input_error("options", f"--{name.replace('_', '-')} {reason}")

@@ -1,0 +1,102 @@
+"""report.json: one object about a conversion, built from the values of the stages."""
+import os
+
+from . import __version__
+from .native import load
+
+STAGES = ("tessellate", "field", "seamless", "partition", "quantize", "reembed", "optimize", "extract", "fit", "write")
+
+
+def report(result):
+    """The object that report.json holds. Keys of stages that this version does not have are null."""
+    triangles = sum(r.region.triangles for r in result.regions) or 1
+    fitted = sum(r.fitted is not None for r in result.regions) or 1
+    regions = []
+    for index, item in enumerate(result.regions):
+        seconds = dict.fromkeys(STAGES)
+        seconds.update({stage: round(value, 6) for stage, value in item.seconds.items()})
+        share = item.region.triangles / triangles
+        seconds["tessellate"] = round(share * result.seconds.get("tessellate", 0.0), 6)
+        if item.fitted is not None:
+            seconds["fit"] = round(seconds["fit"] + result.seconds.get("trim", 0.0) / fitted, 6)
+        if "write" in result.seconds:
+            seconds["write"] = round(share * result.seconds["write"], 6)
+        regions.append(_region_report(result, index, item, seconds))
+    return {
+        "input": {"path": result.source.path, "kind": result.source.kind, **result.shape_counts,
+                  "repairs": result.repairs},
+        "options": {k: v for k, v in sorted(vars(result.options).items())},
+        "regions": regions,
+        "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions), 6),
+        "peak_memory_mb": _peak_memory_mb(),
+        "version": __version__,
+        "opencascade": load().occ_version,
+    }
+
+
+def _region_report(result, index, item, seconds):
+    error = item.error
+    return {
+        "name": item.name,
+        "status": "ok" if error is None else "failed",
+        "error": None if error is None else {
+            "stage": error.stage, "message": error.message, "where": error.where, "position": error.position,
+        },
+        "mesh": {
+            "triangles": item.region.triangles,
+            "vertices": item.region.vertices,
+            "boundary_loops": item.region.boundary_loops,
+            "euler": item.region.euler,
+        },
+        "singularities": item.field and _singularities(item.field),
+        "seamless": item.seamless and {
+            "flipped_before": item.seamless.flipped_before, "flipped": 0, "iterations": item.seamless.iterations,
+        },
+        "tmesh": None,
+        "quantization": None,
+        "embedding": None,
+        "gridmap": item.grid and {
+            "flipped": 0,
+            "distortion_start": item.grid.distortion_start,
+            "distortion_end": item.grid.distortion_end,
+            "iterations": item.grid.iterations,
+        },
+        "quads": item.quads and {
+            "quads": item.quads.quads,
+            "trimmed": item.quads.trimmed,
+            "irregular_vertices": item.quads.irregular_vertices,
+            "angle_deviation": {
+                "mean": item.quads.angle_mean, "p95": item.quads.angle_p95, "max": item.quads.angle_max,
+            },
+            "edge_length": {"mean": item.quads.edge_mean, "std": item.quads.edge_std},
+        },
+        "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
+        "seconds": seconds,
+    }
+
+
+def _singularities(field):
+    counts = field.singularities
+    return {"count": sum(counts.values()), "indices": {str(k): counts[k] for k in sorted(counts)}}
+
+
+def _nurbs_report(result, index, item):
+    faces = [f for f in result.spline.faces if f["region"] == index]
+    return {
+        "faces": len(faces),
+        "control_points": sum(f["control_points"] for f in faces),
+        "degree": result.options.degree,
+        "max_deviation": item.fitted.max_deviation,
+        "rms_deviation": item.fitted.rms_deviation,
+        "max_gap": max((f["edge_tolerance"] for f in faces), default=0.0),
+        "tolerance": result.options.tolerance,
+    }
+
+
+def _peak_memory_mb():
+    try:
+        import resource
+    except ImportError:  # not a Unix
+        return None
+    unit = 1 if os.uname().sysname == "Darwin" else 1024
+    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6, 1)

@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+"""Makes the four example parts with FreeCAD's own modelling and writes them as STEP beside this script.
+
+    freecadcmd examples/make_examples.py        or        python3 examples/make_examples.py
+    (with FreeCAD's modules on the path; a folder as the last argument writes there instead)
+
+hood.step              freeform panel of 1.2 m, trimmed outline with rounded corners, two cut-outs
+tube.step              bent open tube, one smooth surface
+sheet.step             wavy sheet cut by an ellipse
+box_with_fillets.step  solid box, its vertical edges filleted, with a through hole
+"""
+import math
+import os
+import re
+import sys
+import traceback
+
+import FreeCAD
+import Part
+
+V = FreeCAD.Vector
+
+
+def graph_surface(height, width, depth, nodes_x, nodes_y):
+    """A B-spline face through z = height(x, y) over a rectangle around the origin, mm."""
+    points = []
+    for i in range(nodes_x):
+        x = width * (i / (nodes_x - 1) - 0.5)
+        ys = (depth * (j / (nodes_y - 1) - 0.5) for j in range(nodes_y))
+        points.append([V(x, y, height(x, y)) for y in ys])
+    surface = Part.BSplineSurface()
+    surface.interpolate(points)
+    return surface.toShape()
+
+
+def prism(wire, low, high):
+    """The solid over a plane outline at z = 0, from `low` to `high`."""
+    outline = Part.Face(wire)
+    outline.translate(V(0, 0, low))
+    return outline.extrude(V(0, 0, high - low))
+
+
+def rounded_polygon(corners, radius):
+    """A closed wire through plane corners, each rounded with the same radius."""
+    edges, count = [], len(corners)
+    arcs = []
+    for i, corner in enumerate(corners):
+        before = (corners[i - 1] - corner).normalize()
+        after = (corners[(i + 1) % count] - corner).normalize()
+        half = before.getAngle(after) / 2
+        reach = radius / math.tan(half)
+        middle = corner + (before + after).normalize() * (radius / math.sin(half) - radius)
+        arcs.append((corner + before * reach, middle, corner + after * reach))
+    for i, (start, middle, end) in enumerate(arcs):
+        edges.append(Part.Arc(start, middle, end).toShape())
+        edges.append(Part.makeLine(end, arcs[(i + 1) % count][0]))
+    return Part.Wire(edges)
+
+
+def hood():
+    def height(x, y):
+        return 90 * math.cos(1.1 * x / 600) * math.cos(0.9 * y / 450) + 14 * math.sin(x / 260) * math.sin(y / 330)
+
+    face = graph_surface(height, 1300, 1000, 27, 21)
+    outline = rounded_polygon(
+        [V(-600, -330, 0), V(560, -430, 0), V(600, 0, 0), V(560, 430, 0), V(-600, 330, 0)], 70
+    )
+    panel = face.common(prism(outline, -300, 300))
+    vent = rounded_polygon([V(-420, -190, 0), V(-140, -215, 0), V(-140, -90, 0), V(-420, -90, 0)], 25)
+    panel = panel.cut(prism(vent, -300, 300))
+    badge = Part.Wire(Part.makeCircle(75, V(330, 120, 0)))
+    return panel.cut(prism(badge, -300, 300)).Faces[0]
+
+
+def tube():
+    """Poles on circles around a smooth spine: closed and curvature continuous around, unlike a swept circle."""
+    spine = Part.BSplineCurve()
+    spine.interpolate([V(0, 0, 0), V(0, 0, 120), V(30, 20, 230), V(110, 60, 300), V(220, 80, 320)])
+    around, along, radius = 16, 24, 36
+    poles = []
+    for j in range(along):
+        t = spine.FirstParameter + (spine.LastParameter - spine.FirstParameter) * j / (along - 1)
+        axis = spine.tangent(t)[0]
+        side = V(0, 1, 0).cross(axis).normalize()
+        turns = (2 * math.pi * i / around for i in range(around))
+        up = axis.cross(side)
+        poles.append([spine.value(t) + (side * math.cos(a) + up * math.sin(a)) * radius for a in turns])
+    poles = [list(row) for row in zip(*poles)]  # around first
+    surface = Part.BSplineSurface()
+    ends = [4] + [1] * (along - 4) + [4]
+    surface.buildFromPolesMultsKnots(
+        poles, [1] * (around + 1), ends, list(range(around + 1)), list(range(along - 2)), True, False, 3, 3
+    )
+    return surface.toShape()
+
+
+def sheet():
+    def height(x, y):
+        return 18 * math.sin(x / 55) * math.cos(y / 48)
+
+    face = graph_surface(height, 420, 320, 43, 33)
+    ellipse = Part.Wire(Part.Ellipse(V(0, 0, 0), 185, 130).toShape())
+    return face.common(prism(ellipse, -80, 80)).Faces[0]
+
+
+def box_with_fillets():
+    box = Part.makeBox(120, 80, 40)
+    upright = [e for e in box.Edges if abs(e.tangentAt(e.FirstParameter).z) > 0.9]
+    return box.makeFillet(14, upright).cut(Part.makeCylinder(16, 60, V(60, 40, -10))).Solids[0]
+
+
+def write_step(shape, path):
+    """STEP with a constant date in its header, so that the same shape gives the same bytes."""
+    shape.exportStep(path)
+    with open(path, encoding="utf-8") as stream:
+        text = stream.read()
+    text = re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "'2000-01-01T00:00:00'", text)
+    with open(path, "w", encoding="utf-8", newline="\n") as stream:
+        stream.write(text)
+
+
+def main():
+    folder = sys.argv[-1] if os.path.isdir(sys.argv[-1]) else os.path.dirname(os.path.abspath(__file__))
+    for make in (hood, tube, sheet, box_with_fillets):
+        shape = make()
+        assert shape.isValid(), make.__name__
+        write_step(shape, os.path.join(folder, make.__name__ + ".step"))
+        print(f"{make.__name__}: {shape.ShapeType}, {len(shape.Faces)} faces, area {shape.Area:.6g}")
+    return 0
+
+
+# freecadcmd runs a file a second time and exits with 0 where an exception leaves it: catch everything, exit at once.
+try:
+    status = main()
+except BaseException:
+    traceback.print_exc()
+    status = 1
+sys.stdout.flush()
+sys.exit(status)
