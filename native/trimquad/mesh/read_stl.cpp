@@ -2,8 +2,8 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <numeric>
 
+#include "trimquad/mesh/equal_points.h"
 #include "trimquad/mesh/mesh_formats.h"
 
 namespace trimquad {
@@ -96,21 +96,10 @@ PolygonFile readAscii(const MeshSource& source) {
 
 /// STL has no vertices of its own: corners with bitwise the same coordinates are one, numbered as first met.
 void weldEqualCorners(PolygonFile& file) {
-  std::vector<int> order(file.points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto before = [&](int a, int b) {
-    const auto &p = file.points[a], &q = file.points[b];
-    const int different = p.x() != q.x() ? 0 : p.y() != q.y() ? 1 : 2;
-    return p[different] != q[different] ? p[different] < q[different] : a < b;
-  };
-  std::sort(order.begin(), order.end(), before);
-  std::vector<int> first(order.size());  // the first corner at the same place
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] =
-        i > 0 && file.points[order[i]] == file.points[order[i - 1]] ? first[order[i - 1]] : order[i];
+  const std::vector<int> first = firstEqualPoint(file.points);
   std::vector<Eigen::Vector3d> points;
-  std::vector<int> vertex(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  std::vector<int> vertex(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
     if (first[i] == int(i)) {
       vertex[i] = int(points.size());
       points.push_back(file.points[i]);
