@@ -135,7 +135,8 @@ class _Conversion:
         result, failed = self.result, self.result.failed
         if self.parsed.verbose:
             for item in result.regions:
-                quads = "" if item.quads is None else f"{item.quads.quads} quads, {item.quads.trimmed} trimmed"
+                counts = item.quads.statistics if item.quads else {"quads": 0, "trimmed": 0}
+                quads = f"{counts['quads']} quads, {counts['trimmed']} trimmed"
                 _say(f"{item.name}: {item.error or quads}")
             for name in self.names:
                 _say(os.path.join(self.parsed.out, name))

@@ -61,15 +61,7 @@ def _region_report(result, index, item, seconds):
             "distortion_end": item.grid.distortion_end,
             "iterations": item.grid.iterations,
         },
-        "quads": item.quads and {
-            "quads": item.quads.quads,
-            "trimmed": item.quads.trimmed,
-            "irregular_vertices": item.quads.irregular_vertices,
-            "angle_deviation": {
-                "mean": item.quads.angle_mean, "p95": item.quads.angle_p95, "max": item.quads.angle_max,
-            },
-            "edge_length": {"mean": item.quads.edge_mean, "std": item.quads.edge_std},
-        },
+        "quads": item.quads and item.quads.statistics,
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
         "seconds": seconds,
     }

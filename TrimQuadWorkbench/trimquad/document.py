@@ -1,0 +1,27 @@
+"""A result as a FreeCAD document."""
+from .error import input_error
+
+
+def write_document(result, path):
+    """Save the B-spline faces and the quads of a Result as .FCStd. Needs FreeCAD's modules; raises Error(input)."""
+    try:
+        import FreeCAD
+        import Mesh  # noqa: F401
+        import Part  # noqa: F401
+    except ImportError as error:
+        raise input_error("write", f"--write fcstd needs FreeCAD's Python modules on the path ({error})") from None
+    from .features.quad_mesh import QuadMesh, fill
+
+    document = FreeCAD.newDocument("TrimQuad", hidden=True)
+    try:
+        if result.native_shape is not None:
+            document.addObject("Part::Feature", "BSplines").Shape = result.shape
+        parts = [r.polygons for r in result.regions if r.quads is not None]
+        if parts:
+            quads = document.addObject("Mesh::FeaturePython", "QuadMesh")
+            QuadMesh(quads)
+            fill(quads, parts)
+            quads.purgeTouched()
+        document.saveAs(path)
+    finally:
+        FreeCAD.closeDocument(document.Name)

@@ -1,0 +1,82 @@
+"""SplineShell: an object's faces rebuilt as trimmed B-spline faces."""
+from ..error import Error
+from ..options import Options
+from . import conversion
+
+PROPERTIES = (
+    ("App::PropertyLinkSub", "Source", "Source", "The object, or the faces of it, that is converted", None),
+    ("App::PropertyLength", "EdgeLength", "Quads", "Length of a quad's edge; 0: from the number of quads", 0.0),
+    ("App::PropertyInteger", "Quads", "Quads", "About how many quads, where no edge length is given", 1000),
+    ("App::PropertyAngle", "FeatureAngle", "Quads", "Edges sharper than this separate surfaces", 30.0),
+    ("App::PropertyEnumeration", "Features", "Quads", "What sharp edges do; automatic: trim for CAD, ignore for meshes",
+     ["automatic", "trim", "ignore"]),
+    ("App::PropertyLength", "Tolerance", "B-splines", "Largest deviation; 0: from the relative tolerance", 0.0),
+    ("App::PropertyFloat", "RelativeTolerance", "B-splines", "Largest deviation as a fraction of the diagonal", 1e-3),
+    ("App::PropertyInteger", "Degree", "B-splines", "Degree of the B-splines, 2 to 5", 3),
+    ("App::PropertyLength", "Deviation", "Result", "Largest deviation that was measured", 0.0),
+    ("App::PropertyStringList", "FailedRegions", "Result", "Regions that could not be converted, and why", []),
+)
+RESULTS = ("Deviation", "FailedRegions")
+
+
+class SplineShell:
+    """Proxy of a Part::FeaturePython. All data are in properties; `Shape` holds the B-spline faces."""
+
+    TYPE = "TrimQuad::SplineShell"
+
+    def __init__(self, obj):
+        self.Type = self.TYPE
+        obj.Proxy = self
+        self.ensure_properties(obj)
+
+    def ensure_properties(self, obj):
+        for kind, name, group, about, value in PROPERTIES:
+            if not hasattr(obj, name):
+                obj.addProperty(kind, name, group, about)
+                if value is not None:
+                    setattr(obj, name, value)
+        for name in RESULTS:
+            obj.setEditorMode(name, 1)
+
+    def onDocumentRestored(self, obj):
+        self.ensure_properties(obj)
+
+    def execute(self, obj):
+        try:
+            result = result_of(obj)
+        except Error as error:
+            raise RuntimeError(str(error)) from None
+        obj.FailedRegions = [f"{r.name}: {r.error}" for r in result.failed]
+        shape = result.shape
+        if shape is None:
+            raise RuntimeError(obj.FailedRegions[0])
+        obj.Shape = shape
+        obj.Deviation = max(r.fitted.max_deviation for r in result.regions if r.fitted is not None)
+
+    def dumps(self):
+        return {"type": self.Type}
+
+    def loads(self, state):
+        self.Type = (state or {}).get("type", self.TYPE)
+
+    # FreeCAD 0.20 and 0.21 know these names only.
+    __getstate__, __setstate__ = dumps, loads
+
+
+def options_of(obj):
+    """The Options that a SplineShell's properties say."""
+    edge_length, tolerance = float(obj.EdgeLength), float(obj.Tolerance)
+    return Options(
+        edge_length=edge_length or None,
+        quads=None if edge_length else obj.Quads,
+        features=None if obj.Features == "automatic" else obj.Features,
+        feature_angle=float(obj.FeatureAngle),
+        tolerance=tolerance or None,
+        relative_tolerance=None if tolerance else obj.RelativeTolerance,
+        degree=obj.Degree,
+    )
+
+
+def result_of(obj):
+    """The Result of a SplineShell. Raises Error."""
+    return conversion.result_of(conversion.source_of(obj.Source), options_of(obj))

@@ -1,0 +1,168 @@
+"""Pictures of a result: the map as a checker on the surface, the quads, the B-spline faces."""
+import numpy
+
+from .error import input_error
+from .freecad_shape import shape_from_bytes
+from .native import load
+
+SIZE = (9.0, 6.75)  # inches, at 100 dots an inch
+CHECKS = (numpy.array([0.93, 0.93, 0.90]), numpy.array([0.33, 0.52, 0.74]))
+QUAD_COLOUR = numpy.array([0.90, 0.91, 0.93])
+TRIMMED_COLOUR = numpy.array([0.98, 0.84, 0.60])
+FACE_COLOURS = numpy.array([[0.55, 0.68, 0.85], [0.93, 0.76, 0.52], [0.62, 0.80, 0.62], [0.85, 0.62, 0.66],
+                            [0.74, 0.68, 0.86], [0.62, 0.80, 0.82]])
+# Each triangle is divided into this many parts a side where the checker changes inside it.
+CHECKER_DIVISION = 6
+LIGHT = numpy.array([0.35, -0.45, 0.82])
+
+
+def write_pictures(result, path_of, progress):
+    """Write map.png, quads.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
+    try:
+        import matplotlib
+
+        matplotlib.use("Agg")
+    except ImportError as error:
+        raise input_error("write", f"--write pictures needs matplotlib ({error})") from None
+    maps = [triangles_of_map(r.grid.to_obj()) for r in result.regions if r.grid is not None]
+    if maps:
+        _save(path_of("map.png"), [_checker(*m) for m in maps], [])
+    progress.check()
+    polygons = [r.polygons for r in result.regions if r.quads is not None]
+    if polygons:
+        _save(path_of("quads.png"), [_quads(p) for p in polygons], [_lines(p) for p in polygons])
+    progress.check()
+    if result.native_shape is not None:
+        faces, lines = _faces(result)
+        _save(path_of("nurbs.png"), faces, lines)
+
+
+def triangles_of_map(text):
+    """Corners (m, 3, 3) and their images (m, 3, 2) of the triangles of a gridmap.obj or seamless.obj."""
+    points, images, corners, places = [], [], [], []
+    for line in text.splitlines():
+        words = line.split()
+        if not words:
+            continue
+        if words[0] == "v":
+            points.append([float(w) for w in words[1:4]])
+        elif words[0] == "vt":
+            images.append([float(w) for w in words[1:3]])
+        elif words[0] == "f":
+            pairs = [w.split("/") for w in words[1:4]]
+            corners.append([int(p[0]) - 1 for p in pairs])
+            places.append([int(p[1]) - 1 for p in pairs])
+    return numpy.array(points)[corners], numpy.array(images)[places]
+
+
+def _checker(corners, images):
+    """Small triangles and their colours: squares of the plane alternate."""
+    n = CHECKER_DIVISION
+    weights = []
+    for i in range(n):
+        for j in range(n - i):
+            a, b, c = (i, j), (i + 1, j), (i, j + 1)
+            weights.append([(n - x - y, x, y) for x, y in (a, b, c)])
+            if i + j < n - 1:
+                weights.append([(n - x - y, x, y) for x, y in (b, (i + 1, j + 1), c)])
+    weights = numpy.array(weights) / n  # (parts, 3 corners, 3 weights)
+    small = numpy.einsum("pkw,mwx->mpkx", weights, corners).reshape(-1, 3, 3)
+    middles = numpy.einsum("pkw,mwx->mpkx", weights, images).mean(axis=2).reshape(-1, 2)
+    odd = (numpy.floor(middles).sum(axis=1).astype(int) % 2).astype(bool)
+    return small, numpy.where(odd[:, None], CHECKS[1], CHECKS[0])
+
+
+def _quads(polygons):
+    count = 2 * len(polygons.full)
+    triangles = polygons.points[polygons.triangles()]
+    colours = numpy.tile(TRIMMED_COLOUR, (len(triangles), 1))
+    colours[:count] = QUAD_COLOUR
+    return triangles, colours
+
+
+def _lines(polygons):
+    return polygons.points[polygons.edges()], 0.5
+
+
+def _faces(result):
+    shape = shape_from_bytes(load().shape_to_freecad(result.native_shape))
+    chord = result.model.diagonal / 1500
+    faces, lines = [], []
+    for index, face in enumerate(shape.Faces):
+        points, triangles = face.tessellate(chord)
+        points = numpy.array([tuple(p) for p in points])
+        corners = points[numpy.array(triangles)]
+        if face.Orientation == "Reversed":
+            corners = corners[:, ::-1]
+        faces.append((corners, numpy.tile(FACE_COLOURS[index % len(FACE_COLOURS)], (len(corners), 1))))
+    for edge in shape.Edges:
+        points = numpy.array([tuple(p) for p in edge.discretize(60)])
+        lines.append((numpy.stack([points[:-1], points[1:]], axis=1), 1.1))
+    return faces, lines
+
+
+def _save(path, surfaces, lines):
+    """Paint triangles and lines from back to front, in a fixed oblique view."""
+    from matplotlib import figure
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    triangles = numpy.concatenate([s[0] for s in surfaces])
+    colours = numpy.concatenate([s[1] for s in surfaces])
+    view = _view_axes(triangles)
+    flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
+    order = numpy.argsort(depth, kind="stable")
+    shaded = numpy.clip(colours * _shade(triangles, view)[:, None], 0, 1)
+    drawing = figure.Figure(figsize=SIZE, dpi=100)
+    FigureCanvasAgg(drawing)
+    axes = drawing.add_axes([0.02, 0.02, 0.96, 0.96])
+    axes.set_aspect("equal")
+    axes.axis("off")
+    axes.add_collection(
+        PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
+    )
+    for segments, width in lines:
+        seen = _visible(segments, triangles, view)
+        axes.add_collection(LineCollection((segments @ view[:, :2])[seen], colors="#1b2a41", linewidths=width))
+    axes.autoscale_view()
+    drawing.savefig(path, metadata={"Software": None})
+
+
+def _view_axes(triangles):
+    """Columns: right, up, towards the eye. The eye stands obliquely above."""
+    towards = numpy.array([0.45, -0.72, 0.62])
+    towards /= numpy.linalg.norm(towards)
+    right = numpy.cross([0, 0, 1], towards)
+    right /= numpy.linalg.norm(right)
+    return numpy.stack([right, numpy.cross(towards, right), towards], axis=1)
+
+
+def _shade(triangles, view):
+    normals = numpy.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    lengths = numpy.linalg.norm(normals, axis=1)
+    normals /= numpy.where(lengths > 0, lengths, 1)[:, None]
+    light = LIGHT / numpy.linalg.norm(LIGHT)
+    # Both sides are lit: open surfaces show their inside.
+    return 0.62 + 0.42 * numpy.abs(normals @ light) - 0.08 * ((normals @ view[:, 2]) < 0)
+
+
+def _visible(segments, triangles, view, cells=400):
+    """Which segments no triangle hides: their middles against a depth raster of the triangles."""
+    flat, depth = triangles @ view[:, :2], triangles @ view[:, 2]
+    low = flat.reshape(-1, 2).min(axis=0)
+    size = max((flat.reshape(-1, 2).max(axis=0) - low).max() / cells, 1e-300)
+    raster = numpy.full((cells + 2, cells + 2), -numpy.inf)
+    for steps in _samples():
+        places = numpy.einsum("w,mwx->mx", steps, flat)
+        heights = depth @ steps
+        index = ((places - low) / size).astype(int)
+        numpy.maximum.at(raster, (index[:, 0], index[:, 1]), heights)
+    middles = segments.mean(axis=1)
+    index = numpy.clip(((middles @ view[:, :2] - low) / size).astype(int), 0, cells + 1)
+    extent = numpy.linalg.norm(triangles.reshape(-1, 3).max(axis=0) - triangles.reshape(-1, 3).min(axis=0))
+    return middles @ view[:, 2] > raster[index[:, 0], index[:, 1]] - 0.02 * extent
+
+
+def _samples():
+    n = 4
+    return [numpy.array([n - i - j, i, j]) / n for i in range(n + 1) for j in range(n + 1 - i)]
