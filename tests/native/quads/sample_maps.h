@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "trimquad/gridmap/grid_map.h"
+
+namespace trimquad::samples {
+
+/// Triangles with one chart position per corner, in quads.
+struct MappedSoup {
+  TriangleSoup soup;
+  std::vector<std::array<Eigen::Vector2d, 3>> corners;
+
+  void add(std::array<int, 3> triangle, std::array<Eigen::Vector2d, 3> corner) {
+    soup.triangles.push_back(triangle);
+    corners.push_back(corner);
+  }
+};
+
+inline GridMap gridMapOf(const MappedSoup& mapped, int bits = 24) {
+  GridMap map;
+  map.mesh = buildSurfaceMesh(mapped.soup);
+  map.scale.bits = bits;
+  map.corner.resize(map.mesh.n_halfedges());
+  for (const auto f : map.mesh.faces())
+    for (const auto h : map.mesh.fh_range(f))
+      for (int k = 0; k < 3; ++k)
+        if (mapped.soup.triangles[f.idx()][k] == map.mesh.from_vertex_handle(h).idx())
+          map.corner[h.idx()] = map.scale.round(mapped.corners[f.idx()][k]);
+  return map;
+}
+
+/// A flat map: the chart is the plane of the points themselves.
+inline GridMap planarMap(const TriangleSoup& soup, int bits = 24) {
+  MappedSoup mapped{soup, {}};
+  for (const auto& t : soup.triangles)
+    mapped.corners.push_back(
+        {soup.points[t[0]].head<2>(), soup.points[t[1]].head<2>(), soup.points[t[2]].head<2>()});
+  return gridMapOf(mapped, bits);
+}
+
+/// columns x rows cells of two triangles each, without those that `leaveOut(i, j)`; positions by `place(i,
+/// j)`.
+inline TriangleSoup sheet(
+    int columns, int rows, const std::function<Eigen::Vector2d(int, int)>& place,
+    const std::function<bool(int, int)>& leaveOut = [](int, int) { return false; }) {
+  TriangleSoup soup;
+  std::vector<int> number((columns + 1) * (rows + 1), -1);
+  const auto vertex = [&](int i, int j) {
+    int& n = number[j * (columns + 1) + i];
+    if (n < 0) {
+      n = int(soup.points.size());
+      const Eigen::Vector2d p = place(i, j);
+      soup.points.push_back({p.x(), p.y(), 0});
+    }
+    return n;
+  };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      if (leaveOut(i, j)) continue;
+      const int a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
+      soup.triangles.push_back({a, b, c});
+      soup.triangles.push_back({a, c, d});
+    }
+  return soup;
+}
+
+/// `quarters` squares of side `width` quads around a grid point, each n x n cells in a chart of its own.
+/// `inner` cells next to the point are left out of every square.
+inline MappedSoup cone(int quarters, int n, double width, int inner = 0, Eigen::Vector2d apex = {0, 0}) {
+  MappedSoup mapped;
+  std::vector<int> number(size_t(quarters) * (n + 1) * (n + 1), -1);
+  const auto vertex = [&](int q, int i, int j) {
+    if (i == 0 && j == 0) q = 0;
+    if (i == 0 && j > 0) q = (q + 1) % quarters, i = j, j = 0;  // the next square's first side
+    int& index = number[(size_t(q) * (n + 1) + j) * (n + 1) + i];
+    if (index < 0) {
+      index = int(mapped.soup.points.size());
+      const double angle = (q + std::atan2(double(j), double(i)) / (M_PI / 2)) * 2 * M_PI / quarters;
+      const double radius = std::hypot(i, j) * width / n;
+      mapped.soup.points.push_back({radius * std::cos(angle), radius * std::sin(angle),
+                                    quarters > 4 ? std::cos(2 * angle) * radius : 0});
+    }
+    return index;
+  };
+  const auto at = [&](int i, int j) -> Eigen::Vector2d { return apex + Eigen::Vector2d(i, j) * (width / n); };
+  for (int q = 0; q < quarters; ++q)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        if (i < inner && j < inner) continue;
+        const int a = vertex(q, i, j), b = vertex(q, i + 1, j), c = vertex(q, i + 1, j + 1),
+                  d = vertex(q, i, j + 1);
+        mapped.add({a, b, c}, {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        mapped.add({a, c, d}, {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+  return mapped;
+}
+
+/// A tube or torus: columns x rows cells of size `du` x `dv` quads, closed in u and perhaps in v. The map is
+/// moved by `offset`.
+inline MappedSoup wrapped(int columns, int rows, double du, double dv, bool torus,
+                          Eigen::Vector2d offset = {0, 0}) {
+  MappedSoup mapped;
+  for (int j = 0; j < rows + !torus; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const double a = 2 * M_PI * i / columns, b = 2 * M_PI * j / rows;
+      if (torus)
+        mapped.soup.points.push_back(
+            {(3 + std::cos(b)) * std::cos(a), (3 + std::cos(b)) * std::sin(a), std::sin(b)});
+      else
+        mapped.soup.points.push_back({std::cos(a), std::sin(a), j * dv});
+    }
+  const auto vertex = [&](int i, int j) { return (torus ? j % rows : j) * columns + i % columns; };
+  const auto at = [&](int i, int j) -> Eigen::Vector2d { return offset + Eigen::Vector2d(i * du, j * dv); };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      mapped.add({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)},
+                 {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mapped.add({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)},
+                 {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mapped;
+}
+
+/// The same map with every triangle in a chart of its own, turned and shifted by grid automorphisms.
+inline void shuffleCharts(GridMap& map, std::mt19937& random) {
+  for (const auto f : map.mesh.faces()) {
+    const Transition t{
+        int(random() % 4),
+        {(Quanta(random() % 21) - 10) * map.scale.one(), (Quanta(random() % 21) - 10) * map.scale.one()}};
+    for (const auto h : map.mesh.fh_range(f)) map.corner[h.idx()] = t(map.corner[h.idx()]);
+  }
+}
+
+}  // namespace trimquad::samples
