@@ -13,7 +13,8 @@ namespace {
 std::int64_t multiplied(std::int64_t a, std::int64_t b) {
   std::int64_t product = 0;
   if (__builtin_mul_overflow(a, b, &product))
-    throw stageError("seamless", "the constraints of the map are too intricate for exact numbers; relax some features");
+    throw stageError("seamless",
+                     "the constraints of the map are too intricate for exact numbers; relax some features");
   return product;
 }
 
@@ -62,8 +63,8 @@ bool ConstraintBasis::addEquation(const std::vector<Term>& terms, std::int64_t c
   std::int64_t right = -constant, divisor = 1;  // 0 = sum + right
   substitute(sum, right, divisor);
   if (sum.empty()) return right == 0;
-  // The smallest factor makes the smallest divisor; among equals the last variable, so that the variables that were
-  // declared first (translations of seams) stay free.
+  // The smallest factor makes the smallest divisor; among equals the last variable, so that the variables
+  // that were declared first (translations of seams) stay free.
   auto pivot = sum.begin();
   for (auto it = sum.begin(); it != sum.end(); ++it)
     if (std::abs(it->second) <= std::abs(pivot->second)) pivot = it;
@@ -113,7 +114,8 @@ std::vector<std::int64_t> ConstraintBasis::evaluateExact(const Eigen::VectorXd& 
   std::vector<std::int64_t> multiple(rows_.size(), 1), x(rows_.size(), 0);
   for (const Row& row : rows_)
     if (row.divisor != 1)
-      for (const auto& [variable, factor] : row.terms) multiple[variable] = std::lcm(multiple[variable], row.divisor);
+      for (const auto& [variable, factor] : row.terms)
+        multiple[variable] = std::lcm(multiple[variable], row.divisor);
   for (Index i = 0; i < freeCount(); ++i) {
     const std::int64_t m = multiple[free_[i]];
     x[free_[i]] = std::llround(std::ldexp(z[i], bits) / double(m)) * m;
@@ -123,8 +125,8 @@ std::vector<std::int64_t> ConstraintBasis::evaluateExact(const Eigen::VectorXd& 
     if (!row.dependent) continue;
     WideQuanta sum = WideQuanta(row.constant) << bits;
     for (const auto& [variable, factor] : row.terms) sum += WideQuanta(factor) * x[variable];
-    // The divisor divides each term by the choice of multiples; it divides the constant as long as it is a power of
-    // two below 2^bits, which rotations by quarter turns (determinant 2 or 4) give.
+    // The divisor divides each term by the choice of multiples; it divides the constant as long as it is a
+    // power of two below 2^bits, which rotations by quarter turns (determinant 2 or 4) give.
     TRIMQUAD_ASSERT(sum % row.divisor == 0);
     x[i] = std::int64_t(sum / row.divisor);
   }

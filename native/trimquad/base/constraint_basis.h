@@ -7,9 +7,9 @@
 
 namespace trimquad {
 
-/// The solutions of a system of sparse linear equations with integer coefficients, x = (N z + c) / d row by row, with
-/// integer N and d. One basis serves every solve on a map: the Poisson solve, untangling and optimisation work on
-/// z in doubles; the exact map evaluates it on whole numbers. (pipeline.md, "Numbers")
+/// The solutions of a system of sparse linear equations with integer coefficients, x = (N z + c) / d row by
+/// row, with integer N and d. One basis serves every solve on a map: the Poisson solve, untangling and
+/// optimisation work on z in doubles; the exact map evaluates it on whole numbers. (pipeline.md, "Numbers")
 class ConstraintBasis {
  public:
   using Index = int;
@@ -20,8 +20,8 @@ class ConstraintBasis {
 
   explicit ConstraintBasis(Index variables);
 
-  /// sum(factor * x) = constant, where `constant` counts whole quads. An equation that follows from earlier ones is
-  /// dropped. Returns false, and changes nothing, where it contradicts them.
+  /// sum(factor * x) = constant, where `constant` counts whole quads. An equation that follows from earlier
+  /// ones is dropped. Returns false, and changes nothing, where it contradicts them.
   bool addEquation(const std::vector<Term>& terms, std::int64_t constant);
 
   /// Ends the input of equations. Free variables keep their order: z[i] is x[freeVariable(i)].
@@ -38,8 +38,8 @@ class ConstraintBasis {
   /// The values of z that x has. Where x satisfies the equations, evaluating them gives x back.
   Eigen::VectorXd restrict(const Eigen::VectorXd& x) const;
 
-  /// z rounded to whole quanta such that every x is a whole number of quanta, then all x, exactly: the equations
-  /// hold to the last bit. \param bits one quad is 2^bits quanta.
+  /// z rounded to whole quanta such that every x is a whole number of quanta, then all x, exactly: the
+  /// equations hold to the last bit. \param bits one quad is 2^bits quanta.
   std::vector<std::int64_t> evaluateExact(const Eigen::VectorXd& z, int bits) const;
 
  private:

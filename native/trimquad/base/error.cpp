@@ -11,7 +11,8 @@ std::string line(const std::string& message, const std::string& where,
   if (!where.empty()) text += " (" + where + ")";
   if (position) {
     char buffer[96];
-    std::snprintf(buffer, sizeof buffer, " at (%.6g, %.6g, %.6g)", position->x(), position->y(), position->z());
+    std::snprintf(buffer, sizeof buffer, " at (%.6g, %.6g, %.6g)", position->x(), position->y(),
+                  position->z());
     text += buffer;
   }
   return text;
@@ -31,7 +32,8 @@ Error::Error(Kind kind, std::string stage, std::string message, std::string wher
 void invariantBroken(const char* condition, const char* file, int line) {
   std::string name(file);
   name = name.substr(name.rfind('/') + 1);
-  throw stageError("internal", std::string("broken invariant: ") + condition + "; please report this with the input",
+  throw stageError("internal",
+                   std::string("broken invariant: ") + condition + "; please report this with the input",
                    name + ":" + std::to_string(line));
 }
 

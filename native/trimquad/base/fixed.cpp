@@ -24,7 +24,8 @@ bool strictlyInsideSector(FixedVector from, FixedVector to, FixedVector d) {
   const int turn = sign(cross(from, to));
   const bool leftOfFrom = sign(cross(from, d)) > 0, rightOfTo = sign(cross(d, to)) > 0;
   if (turn > 0) return leftOfFrom && rightOfTo;
-  if (turn < 0) return leftOfFrom || rightOfTo || (sign(cross(from, d)) == 0 && dot(from, d) < 0 && rightOfTo);
+  if (turn < 0)
+    return leftOfFrom || rightOfTo || (sign(cross(from, d)) == 0 && dot(from, d) < 0 && rightOfTo);
   if (dot(from, to) < 0) return leftOfFrom;
   return !(sign(cross(from, d)) == 0 && dot(from, d) > 0);
 }

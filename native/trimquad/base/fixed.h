@@ -29,10 +29,14 @@ struct FixedVector {
 /// `a` turned counter-clockwise by `quarters` times 90 degrees.
 inline FixedVector rotated(FixedVector a, int quarters) {
   switch (quarters & 3) {
-    case 1: return {-a.v, a.u};
-    case 2: return {-a.u, -a.v};
-    case 3: return {a.v, -a.u};
-    default: return a;
+    case 1:
+      return {-a.v, a.u};
+    case 2:
+      return {-a.u, -a.v};
+    case 3:
+      return {a.v, -a.u};
+    default:
+      return a;
   }
 }
 
@@ -52,12 +56,20 @@ struct FixedScale {
   static FixedScale fitting(double largest);
 };
 
-inline WideQuanta cross(FixedVector a, FixedVector b) { return WideQuanta(a.u) * b.v - WideQuanta(a.v) * b.u; }
-inline WideQuanta dot(FixedVector a, FixedVector b) { return WideQuanta(a.u) * b.u + WideQuanta(a.v) * b.v; }
-inline int sign(WideQuanta x) { return (x > 0) - (x < 0); }
+inline WideQuanta cross(FixedVector a, FixedVector b) {
+  return WideQuanta(a.u) * b.v - WideQuanta(a.v) * b.u;
+}
+inline WideQuanta dot(FixedVector a, FixedVector b) {
+  return WideQuanta(a.u) * b.u + WideQuanta(a.v) * b.v;
+}
+inline int sign(WideQuanta x) {
+  return (x > 0) - (x < 0);
+}
 
 /// +1 if a, b, c turn left (counter-clockwise), -1 if right, 0 if they lie on one line. Exact.
-inline int orientation(FixedVector a, FixedVector b, FixedVector c) { return sign(cross(b - a, c - a)); }
+inline int orientation(FixedVector a, FixedVector b, FixedVector c) {
+  return sign(cross(b - a, c - a));
+}
 
 /// A seam's chart change: x -> rotation(x) + translation. Exact.
 struct Transition {
@@ -78,8 +90,8 @@ struct Transition {
 /// (both must cross it properly, or touch an end): negative if the first crossing comes first. Exact.
 int compareCrossings(FixedVector a, FixedVector b, int axis1, Quanta c1, int axis2, Quanta c2);
 
-/// Whether direction `d` points into the sector swept counter-clockwise from `from` to `to`, strictly. A sector
-/// with from and to in the same direction is the full turn. Exact.
+/// Whether direction `d` points into the sector swept counter-clockwise from `from` to `to`, strictly. A
+/// sector with from and to in the same direction is the full turn. Exact.
 bool strictlyInsideSector(FixedVector from, FixedVector to, FixedVector d);
 
 }  // namespace trimquad

@@ -14,7 +14,7 @@ class Progress {
 
   /// Part of the running stage that is done, in [0, 1].
   double fraction() const { return fraction_; }
-  void report(double fraction) {
+  void report(double fraction) const {
     fraction_ = fraction;
     check();
   }
@@ -24,7 +24,7 @@ class Progress {
 
  private:
   std::atomic<bool> cancelled_{false};
-  std::atomic<double> fraction_{0};
+  mutable std::atomic<double> fraction_{0};
 };
 
 }  // namespace trimquad

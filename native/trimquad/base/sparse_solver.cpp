@@ -16,7 +16,8 @@ bool SparseSolver::tryFactorize(const Eigen::SparseMatrix<double>& matrix) {
 
 void SparseSolver::factorize(const Eigen::SparseMatrix<double>& matrix) {
   if (!tryFactorize(matrix))
-    throw stageError(stage_, "a linear system has no unique solution; the surface may have zero-area triangles");
+    throw stageError(stage_,
+                     "a linear system has no unique solution; the surface may have zero-area triangles");
 }
 
 }  // namespace trimquad

@@ -6,8 +6,8 @@
 
 namespace trimquad {
 
-/// Solves symmetric positive definite sparse systems. The symbolic analysis is kept as long as the pattern of the
-/// matrix stays the same.
+/// Solves symmetric positive definite sparse systems. The symbolic analysis is kept as long as the pattern of
+/// the matrix stays the same.
 class SparseSolver {
  public:
   /// \param stage named in the error when the matrix is not positive definite

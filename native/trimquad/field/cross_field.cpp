@@ -23,8 +23,8 @@ struct Guidance {
   std::vector<double> angle, weight;
 };
 
-/// The quadratic energy of a field given by one angle per face: sum of w (a_g - a_f - angle - jump)^2 over the
-/// interior edges, and its solutions.
+/// The quadratic energy of a field given by one angle per face: sum of w (a_g - a_f - angle - jump)^2 over
+/// the interior edges, and its solutions.
 class AngleSolve {
  public:
   AngleSolve(const SurfaceMesh& mesh, const Transport& transport) : mesh_(mesh), transport_(transport) {
@@ -43,7 +43,8 @@ class AngleSolve {
 
   double faceArea(FaceHandle f) const {
     const auto h = mesh_.halfedge_handle(f);
-    const Eigen::Vector3d a = mesh_.point(mesh_.from_vertex_handle(h)), b = mesh_.point(mesh_.to_vertex_handle(h)),
+    const Eigen::Vector3d a = mesh_.point(mesh_.from_vertex_handle(h)),
+                          b = mesh_.point(mesh_.to_vertex_handle(h)),
                           c = mesh_.point(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(h)));
     return 0.5 * (b - a).cross(c - a).norm();
   }
@@ -99,7 +100,8 @@ class AngleSolve {
 
   std::vector<double> transported() const {
     std::vector<double> difference(mesh_.n_edges(), 0.0);
-    for (const auto e : mesh_.edges()) difference[e.idx()] = transport_.angle[mesh_.halfedge_handle(e, 0).idx()];
+    for (const auto e : mesh_.edges())
+      difference[e.idx()] = transport_.angle[mesh_.halfedge_handle(e, 0).idx()];
     return difference;
   }
 
@@ -111,17 +113,20 @@ class AngleSolve {
 };
 
 /// Per edge (halfedge 0) how many full turns the field makes against parallel transport.
-std::vector<int> jumps(const SurfaceMesh& mesh, const LoopTurning& turning, const std::vector<int>& generator) {
+std::vector<int> jumps(const SurfaceMesh& mesh, const LoopTurning& turning,
+                       const std::vector<int>& generator) {
   std::vector<int> jump(mesh.n_edges(), 0);
   for (size_t g = 0; g < generator.size(); ++g)
     for (const auto h : turning.paths[g])
-      jump[mesh.edge_handle(h).idx()] += (h == mesh.halfedge_handle(mesh.edge_handle(h), 0) ? 1 : -1) * generator[g];
+      jump[mesh.edge_handle(h).idx()] +=
+          (h == mesh.halfedge_handle(mesh.edge_handle(h), 0) ? 1 : -1) * generator[g];
   return jump;
 }
 
-/// The turns of the loops for which the smoothest field is smoothest of all: -1 for every loop but two ends of a tube
-/// (0 each), or but one outer loop (+1). Others need seams with rotations or dislocations.
-std::vector<int> smoothestTurning(const SurfaceMesh& mesh, const AngleSolve& solve, const LoopTurning& turning) {
+/// The turns of the loops for which the smoothest field is smoothest of all: -1 for every loop but two ends
+/// of a tube (0 each), or but one outer loop (+1). Others need seams with rotations or dislocations.
+std::vector<int> smoothestTurning(const SurfaceMesh& mesh, const AngleSolve& solve,
+                                  const LoopTurning& turning) {
   const int loops = int(turning.loops.size());
   if (loops == 1) return {1};
   // The energy is quadratic in the generators' turns: one solution for each, and their Gram matrix.
@@ -170,17 +175,18 @@ Guidance curvatureGuidance(const Region& region, const Transport& transport, con
     const Eigen::Vector3d centroid = mesh.calc_face_centroid(f);
     const auto curvature = surface->curvature(centroid);
     guidance.angle[f.idx()] = transport.angleOf(f, curvature.direction1);
-    // How distinct the directions are: the angle by which the surface bends more in one than in the other over the
-    // region's size, against one radian.
+    // How distinct the directions are: the angle by which the surface bends more in one than in the other
+    // over the region's size, against one radian.
     const double bend = std::abs(curvature.k1 - curvature.k2) * size;
     guidance.weight[f.idx()] = std::isfinite(bend) ? bend * bend / (1 + bend * bend) : 0.0;
   }
   return guidance;
 }
 
-/// The rotation, up to quarter turns, that brings `angle` closest to the guidance; and how sure it is, in [0, 1].
-std::pair<double, double> bestRotation(const SurfaceMesh& mesh, const AngleSolve& solve, const Guidance& guidance,
-                                       const Eigen::VectorXd& angle) {
+/// The rotation, up to quarter turns, that brings `angle` closest to the guidance; and how sure it is, in [0,
+/// 1].
+std::pair<double, double> bestRotation(const SurfaceMesh& mesh, const AngleSolve& solve,
+                                       const Guidance& guidance, const Eigen::VectorXd& angle) {
   std::complex<double> sum = 0;
   double total = 0;
   for (const auto f : mesh.faces()) {
@@ -192,7 +198,8 @@ std::pair<double, double> bestRotation(const SurfaceMesh& mesh, const AngleSolve
 }
 
 /// The same from the directions of the boundary edges, for surfaces that bend nowhere.
-double rotationAlongBoundary(const SurfaceMesh& mesh, const Transport& transport, const Eigen::VectorXd& angle) {
+double rotationAlongBoundary(const SurfaceMesh& mesh, const Transport& transport,
+                             const Eigen::VectorXd& angle) {
   std::complex<double> sum = 0;
   for (const auto h : mesh.halfedges()) {
     if (!mesh.is_boundary(h)) continue;
@@ -207,13 +214,15 @@ void requireSingularityFree(const SurfaceMesh& mesh) {
   const auto loops = boundaryLoops(mesh);
   const int genus2 = 2 - eulerCharacteristic(mesh) - int(loops.size());
   if (loops.empty())
-    throw stageError("field",
-                     "the region is a closed surface, which needs irregular vertices; this version maps only regions "
-                     "with a boundary: cut it, or open it along an edge");
+    throw stageError(
+        "field",
+        "the region is a closed surface, which needs irregular vertices; this version maps only regions "
+        "with a boundary: cut it, or open it along an edge");
   if (genus2 != 0)
-    throw stageError("field",
-                     "the region has handles (genus " + std::to_string(genus2 / 2) +
-                         "), which need irregular vertices; this version maps only regions of genus 0: cut the handles");
+    throw stageError(
+        "field",
+        "the region has handles (genus " + std::to_string(genus2 / 2) +
+            "), which need irregular vertices; this version maps only regions of genus 0: cut the handles");
 }
 
 }  // namespace
@@ -235,13 +244,14 @@ CrossField crossField(const Region& region, const Progress& progress) {
   Eigen::VectorXd angle = solve.solve(smooth);
   progress.report(0.5);
 
-  // Curvature settles the rotation that the smoothest field leaves open, then bends the field within its homotopy class:
-  // the branch of the guidance nearest to the field is chosen anew a few times.
+  // Curvature settles the rotation that the smoothest field leaves open, then bends the field within its
+  // homotopy class: the branch of the guidance nearest to the field is chosen anew a few times.
   const Guidance guidance = curvatureGuidance(region, frames, progress);
   progress.report(0.7);
   const auto [rotation, certainty] = bestRotation(mesh, solve, guidance, angle);
   angle.array() += certainty > 1e-3 ? rotation : rotationAlongBoundary(mesh, frames, angle);
-  constexpr double kGuidanceReach = 4;  // the guidance takes over at lengths above 1 / (this) of the region's size
+  constexpr double kGuidanceReach =
+      4;  // the guidance takes over at lengths above 1 / (this) of the region's size
   std::vector<double> weight(mesh.n_faces());
   const double area = surfaceArea(mesh);
   double totalWeight = 0;

@@ -26,7 +26,8 @@ void walkBeside(const SurfaceMesh& mesh, const std::vector<HalfedgeHandle>& loop
   }
 }
 
-/// Shortest paths from the vertices of loop 0 to the other loops, as a tree of loops joined one after the other.
+/// Shortest paths from the vertices of loop 0 to the other loops, as a tree of loops joined one after the
+/// other.
 std::vector<std::vector<HalfedgeHandle>> joiningPaths(const SurfaceMesh& mesh,
                                                       const std::vector<std::vector<HalfedgeHandle>>& loops) {
   std::vector<int> loopOf(mesh.n_vertices(), -1);
@@ -54,7 +55,8 @@ std::vector<std::vector<HalfedgeHandle>> joiningPaths(const SurfaceMesh& mesh,
     if (d > distance[v]) continue;
     if (loopOf[v] >= 0 && !joined[loopOf[v]]) {
       auto& path = paths.emplace_back();
-      for (int w = v; arrival[w].is_valid(); w = mesh.from_vertex_handle(arrival[w]).idx()) path.push_back(arrival[w]);
+      for (int w = v; arrival[w].is_valid(); w = mesh.from_vertex_handle(arrival[w]).idx())
+        path.push_back(arrival[w]);
       start(loopOf[v]);
       continue;
     }
@@ -112,8 +114,8 @@ LoopTurning loopTurning(const SurfaceMesh& mesh, const Transport& transport) {
 }
 
 std::vector<int> generatorTurns(const LoopTurning& turning, const std::vector<int>& wanted) {
-  // The paths make a tree of the loops: loops are taken in the reverse order in which they were joined, and each is
-  // put right by the path that joined it.
+  // The paths make a tree of the loops: loops are taken in the reverse order in which they were joined, and
+  // each is put right by the path that joined it.
   const int generators = int(turning.paths.size());
   std::vector<int> result(generators, 0), current = turning.turns;
   std::vector<char> used(generators, 0), done(wanted.size(), 0);

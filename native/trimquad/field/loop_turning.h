@@ -9,10 +9,11 @@ namespace trimquad {
 
 /// The boundary loops of a genus-0 region and how fields without singularities can differ around them.
 ///
-/// A singularity-free field is settled up to deformation by how often each loop turns against it: full turns, +1 for
-/// the outer loop of a plane region, -1 for a hole in it, 0 for either end of a tube. The turns of all loops add up to
-/// the Euler characteristic. A generator is a function on halfedges, +1 or -1 where an edge of one path between two loops is
-/// crossed: adding a full turn to the field there changes the turns of loops, and of nothing else.
+/// A singularity-free field is settled up to deformation by how often each loop turns against it: full turns,
+/// +1 for the outer loop of a plane region, -1 for a hole in it, 0 for either end of a tube. The turns of all
+/// loops add up to the Euler characteristic. A generator is a function on halfedges, +1 or -1 where an edge
+/// of one path between two loops is crossed: adding a full turn to the field there changes the turns of
+/// loops, and of nothing else.
 struct LoopTurning {
   std::vector<std::vector<HalfedgeHandle>> loops;  ///< as boundaryLoops
   std::vector<int> turns;                          ///< per loop, of the field with angle 0 and no generator

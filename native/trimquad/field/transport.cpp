@@ -35,7 +35,8 @@ Transport transport(const SurfaceMesh& mesh) {
   result.angle.assign(mesh.n_halfedges(), 0.0);
   for (const auto f : mesh.faces()) {
     const auto h = mesh.halfedge_handle(f);
-    const Eigen::Vector3d a = mesh.point(mesh.from_vertex_handle(h)), b = mesh.point(mesh.to_vertex_handle(h)),
+    const Eigen::Vector3d a = mesh.point(mesh.from_vertex_handle(h)),
+                          b = mesh.point(mesh.to_vertex_handle(h)),
                           c = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(h)));
     const Eigen::Vector3d u = (b - a).normalized(), n = (b - a).cross(c - a).normalized();
     result.axisU[f.idx()] = u;
@@ -68,8 +69,8 @@ Transport transport(const SurfaceMesh& mesh) {
       faces.push(g);
     }
   }
-  // The other interior edges join the interior vertices to the boundary without a circuit through interior vertices
-  // alone (genus 0): a vertex with one unsettled edge left settles it.
+  // The other interior edges join the interior vertices to the boundary without a circuit through interior
+  // vertices alone (genus 0): a vertex with one unsettled edge left settles it.
   std::vector<int> unsettled(mesh.n_vertices(), 0);
   std::vector<char> settled(mesh.n_edges(), 0);
   for (const auto e : mesh.edges()) {
@@ -89,7 +90,8 @@ Transport transport(const SurfaceMesh& mesh) {
     double sum = 0;
     HalfedgeHandle open;
     for (const auto out : mesh.voh_range(v)) {
-      const auto in = mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
+      const auto in =
+          mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
       sum += result.angle[in.idx()];
       if (!settled[mesh.edge_handle(in).idx()]) open = in;
     }

@@ -7,13 +7,14 @@
 
 namespace trimquad {
 
-/// A frame in each triangle and the angles between neighbouring frames. The angle across an edge is a real number, not
-/// one modulo a full turn: around every interior vertex, counter-clockwise, the angles add up to the vertex's Gauss
-/// curvature exactly, so that a field given by a single-valued angle function has no singularity.
+/// A frame in each triangle and the angles between neighbouring frames. The angle across an edge is a real
+/// number, not one modulo a full turn: around every interior vertex, counter-clockwise, the angles add up to
+/// the vertex's Gauss curvature exactly, so that a field given by a single-valued angle function has no
+/// singularity.
 struct Transport {
   std::vector<Eigen::Vector3d> axisU, axisV;  ///< by face: orthonormal, axisU x axisV the triangle's normal
-  /// By halfedge index, from the face of the halfedge to that of its opposite: a direction at angle a in the first
-  /// frame is parallel to a + angle in the second. Antisymmetric. 0 on the boundary.
+  /// By halfedge index, from the face of the halfedge to that of its opposite: a direction at angle a in the
+  /// first frame is parallel to a + angle in the second. Antisymmetric. 0 on the boundary.
   std::vector<double> angle;
 
   /// Angle of `direction` in the frame of `f`, in (-pi, pi].
@@ -21,8 +22,8 @@ struct Transport {
   Eigen::Vector3d direction(FaceHandle f, double angle) const;
 };
 
-/// \pre a connected mesh with a boundary, of genus 0. Frames are free on a spanning tree of triangles; the lifts of the
-/// other angles are settled vertex by vertex from the leaves of the complementary tree.
+/// \pre a connected mesh with a boundary, of genus 0. Frames are free on a spanning tree of triangles; the
+/// lifts of the other angles are settled vertex by vertex from the leaves of the complementary tree.
 Transport transport(const SurfaceMesh& mesh);
 
 }  // namespace trimquad

@@ -1,19 +1,42 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "trimquad/base/progress.h"
 #include "trimquad/field/cross_field.h"
 #include "trimquad/mesh/parametrization.h"
 #include "trimquad/mesh/region.h"
+#include "trimquad/seamless/seam_graph.h"
 
 namespace trimquad {
 
-/// A seamless map of a region, in units of the target edge length; exact and locally injective.
-struct SeamlessMap : Parametrization {
-  int flippedBefore = 0;  ///< triangles that the Poisson solve turned over
-  int iterations = 0;     ///< Newton steps
+/// What a map should look like in each triangle: the triangle laid flat with the field along the axes, in
+/// quads. By face; corners in the order of the halfedges from halfedge_handle(face) on.
+using MapTarget = std::vector<std::array<Eigen::Vector2d, 3>>;
+
+/// How a map came about.
+struct MapCounters {
+  int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
+  int untangleIterations = 0;  ///< Newton steps until none was
+  bool convexStart =
+      false;           ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
+  int iterations = 0;  ///< Newton steps of the final optimisation
+  double distortionStart = 0, distortionEnd = 0;  ///< mean symmetric Dirichlet energy, 4 for an isometry
 };
 
-/// The seamless map whose gradients follow `field`, scaled so that one quad is `edgeLength` (model units) wide.
-SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, const Progress& progress);
+/// A seamless map of a region, in units of the target edge length; exact and locally injective.
+struct SeamlessMap : Parametrization {
+  SeamGraph seams;
+  MapTarget target;
+  std::vector<int>
+      index;  ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
+  MapCounters counters;
+};
+
+/// The seamless map whose gradients follow `field`, scaled so that one quad is `edgeLength` (model units)
+/// wide. Throws Error(Stage, "seamless") where no valid map was found, naming the first triangle.
+SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength,
+                        const Progress& progress);
 
 }  // namespace trimquad

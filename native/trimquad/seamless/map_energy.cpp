@@ -1,0 +1,140 @@
+#include "trimquad/seamless/map_energy.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace trimquad {
+
+MapDensity symmetricDirichlet(double I, double D) {
+  if (D <= 0) return {std::numeric_limits<double>::infinity(), 0, 0, 0, 0};
+  const double r = 1 / D, r2 = r * r;
+  return {I * (1 + r2), 1 + r2, -2 * I * r2 * r, -2 * r2 * r, 6 * I * r2 * r2};
+}
+
+MapDensity foldoverFree(double I, double D, double epsilon) {
+  const double e2 = epsilon * epsilon, s = std::sqrt(D * D + e2);
+  const double chi = D >= 0 ? (D + s) / 2 : e2 / (2 * (s - D));  // the second form does not cancel
+  const double chi1 = chi / s, chi2 = e2 / (2 * s * s * s);
+  const double n = I + 1 + D * D, c2 = chi * chi;
+  return {n / chi, 1 / chi, 2 * D / chi - n * chi1 / c2, -chi1 / c2,
+          2 / chi - 4 * D * chi1 / c2 - n * (chi2 / c2 - 2 * chi1 * chi1 / (c2 * chi))};
+}
+
+MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis)
+    : basis_(basis.basis()), local_(mesh.n_faces()) {
+  for (const auto f : mesh.faces()) {
+    auto& local = local_[f.idx()];
+    const auto& corner = target[f.idx()];
+    HalfedgeHandle h = mesh.halfedge_handle(f);
+    const Eigen::Vector2d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+    const double twice = e1.x() * e2.y() - e1.y() * e2.x();
+    local.area = twice / 2;
+    totalArea_ += local.area;
+    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
+      local.coordinate[2 * k] = basis.coordinate(basis.wedge(h), 0);
+      local.coordinate[2 * k + 1] = basis.coordinate(basis.wedge(h), 1);
+      const Eigen::Vector2d across = corner[(k + 2) % 3] - corner[(k + 1) % 3];
+      const double gx = -across.y() / twice,
+                   gy = across.x() / twice;  // gradient of the corner's hat function
+      local.toJacobian.col(2 * k) << gx / 2, -gy / 2, gx / 2, gy / 2;
+      local.toJacobian.col(2 * k + 1) << gy / 2, gx / 2, -gy / 2, gx / 2;
+    }
+  }
+}
+
+MapEnergy::Jacobian MapEnergy::jacobian(int face, const Eigen::VectorXd& x) const {
+  const auto& local = local_[face];
+  Eigen::Matrix<double, 6, 1> corners;
+  for (int i = 0; i < 6; ++i) corners[i] = x[local.coordinate[i]];
+  const Eigen::Vector4d j = local.toJacobian * corners;
+  return {j[0], j[1], j[2], j[3]};
+}
+
+Eigen::VectorXd MapEnergy::coordinates(const Eigen::VectorXd& z) const {
+  return basis_.matrix() * z + basis_.offset();
+}
+
+int MapEnergy::flipped(const Eigen::VectorXd& x) const {
+  int count = 0;
+  for (int f = 0; f < int(local_.size()); ++f) count += !(jacobian(f, x).det() > 0);
+  return count;
+}
+
+double MapEnergy::smallestDeterminant(const Eigen::VectorXd& x) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int f = 0; f < int(local_.size()); ++f) least = std::min(least, jacobian(f, x).det());
+  return least;
+}
+
+double MapEnergy::stepToCollapse(const Eigen::VectorXd& x, const Eigen::VectorXd& direction) const {
+  double step = std::numeric_limits<double>::infinity();
+  for (int f = 0; f < int(local_.size()); ++f) {
+    const Jacobian a = jacobian(f, x), b = jacobian(f, direction);
+    // det(a + t b) = c + 2 h t + d t^2; its smallest positive root, without cancellation
+    const double c = a.det(), d = b.det();
+    const double h =
+        a.fzReal * b.fzReal + a.fzImag * b.fzImag - a.fzbarReal * b.fzbarReal - a.fzbarImag * b.fzbarImag;
+    const double discriminant = h * h - c * d;
+    if (discriminant < 0) continue;
+    const double root = std::sqrt(discriminant);
+    const double denominator = -h + root;  // c / (-h + root) is the root that becomes positive first
+    if (denominator > 0 && c / denominator > 0) step = std::min(step, c / denominator);
+  }
+  return step;
+}
+
+double MapEnergy::meanSymmetricDirichlet(const Eigen::VectorXd& x) const {
+  return value(x, symmetricDirichlet, 0) / totalArea_;
+}
+
+void MapEnergy::addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ,
+                            double tangentP, double tangentQ, const Jacobian& j, double follow,
+                            Eigen::VectorXd& gradientX, std::vector<Eigen::Triplet<double>>& entries) const {
+  const auto& local = local_[face];
+  const double p = std::hypot(j.fzReal, j.fzImag), q = std::hypot(j.fzbarReal, j.fzbarImag);
+  const Eigen::Vector2d n = p > 0 ? Eigen::Vector2d(j.fzReal / p, j.fzImag / p) : Eigen::Vector2d(1, 0);
+  const Eigen::Vector2d m = q > 0 ? Eigen::Vector2d(j.fzbarReal / q, j.fzbarImag / q) : Eigen::Vector2d(1, 0);
+
+  Eigen::Vector4d gradient;
+  gradient << dP * n, dQ * m;
+  gradient += 4 * follow * Eigen::Vector4d(j.fzReal - 1, j.fzImag, j.fzbarReal, j.fzbarImag);
+
+  // Positive part of the radial block, in closed form.
+  const double mean = (dPP + dQQ) / 2, half = std::hypot((dPP - dQQ) / 2, dPQ);
+  const double high = mean + half, low = mean - half;
+  double a = dPP, b = dPQ, c = dQQ;
+  if (high <= 0) {
+    a = b = c = 0;
+  } else if (low < 0) {
+    // keep only the eigenvector of `high`
+    double ex = dPQ, ey = high - dPP;
+    if (std::abs(high - dQQ) > std::abs(ey)) ex = high - dQQ, ey = dPQ;
+    const double norm2 = ex * ex + ey * ey;
+    if (norm2 > 0)
+      a = high * ex * ex / norm2, b = high * ex * ey / norm2, c = high * ey * ey / norm2;
+    else
+      a = c = high, b = 0;
+  }
+  const Eigen::Vector2d nt(-n.y(), n.x()), mt(-m.y(), m.x());
+  Eigen::Matrix4d hessian;
+  hessian.topLeftCorner<2, 2>() = a * n * n.transpose() + std::max(tangentP, 0.0) * nt * nt.transpose();
+  hessian.bottomRightCorner<2, 2>() = c * m * m.transpose() + std::max(tangentQ, 0.0) * mt * mt.transpose();
+  hessian.topRightCorner<2, 2>() = b * n * m.transpose();
+  hessian.bottomLeftCorner<2, 2>() = b * m * n.transpose();
+  hessian.diagonal().array() += 4 * follow;
+
+  const Eigen::Matrix<double, 6, 1> g = local.area * (local.toJacobian.transpose() * gradient);
+  const Eigen::Matrix<double, 6, 6> h =
+      local.area * (local.toJacobian.transpose() * hessian * local.toJacobian);
+  for (int i = 0; i < 6; ++i) gradientX[local.coordinate[i]] += g[i];
+  using RowIterator = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 6; ++k)
+      for (RowIterator r(basis_.matrix(), local.coordinate[i]); r; ++r)
+        for (RowIterator s(basis_.matrix(), local.coordinate[k]); s; ++s)
+          entries.emplace_back(int(r.col()), int(s.col()), r.value() * s.value() * h(i, k));
+}
+
+}  // namespace trimquad

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Sparse>
+#include <vector>
+
+#include "trimquad/seamless/seam_basis.h"
+#include "trimquad/seamless/seamless_map.h"
+
+namespace trimquad {
+
+/// Energies of a piecewise linear map as functions of |J|^2 and det J, J the Jacobian against the target
+/// triangle, plus `follow` * |J - 1|^2. Value and derivatives of the first part:
+struct MapDensity {
+  double value, dI, dD, dId, dDd;  ///< by I = |J|^2, D = det J; second derivatives ID and DD (II is 0)
+};
+
+/// |J|^2 + |J^-1|^2, infinite where D <= 0.
+MapDensity symmetricDirichlet(double I, double D);
+/// (|J|^2 + 1 + D^2) / chi(D), chi a smooth positive stand-in for D that tends to max(D, 0) with epsilon:
+/// finite everywhere, so that it leads from maps with flipped triangles to maps without. (Garanzha et al.
+/// 2021)
+MapDensity foldoverFree(double I, double D, double epsilon);
+
+/// The map energies of one mesh, target and basis.
+class MapEnergy {
+ public:
+  MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis);
+
+  /// Jacobian of a triangle as derivatives by z and its conjugate: J a = fz a + fzbar conj(a).
+  struct Jacobian {
+    double fzReal, fzImag, fzbarReal, fzbarImag;
+    double det() const {
+      return fzReal * fzReal + fzImag * fzImag - fzbarReal * fzbarReal - fzbarImag * fzbarImag;
+    }
+    double norm2() const {
+      return 2 * (fzReal * fzReal + fzImag * fzImag + fzbarReal * fzbarReal + fzbarImag * fzbarImag);
+    }
+  };
+  Jacobian jacobian(int face, const Eigen::VectorXd& x) const;
+
+  Eigen::VectorXd coordinates(const Eigen::VectorXd& z) const;  ///< x = matrix z + offset
+
+  int flipped(const Eigen::VectorXd& x) const;  ///< triangles with det <= 0
+  double smallestDeterminant(const Eigen::VectorXd& x) const;
+  /// Largest step along `direction` before a triangle collapses; infinite where none does.
+  double stepToCollapse(const Eigen::VectorXd& x, const Eigen::VectorXd& direction) const;
+  double meanSymmetricDirichlet(const Eigen::VectorXd& x) const;
+
+  template <typename Density>
+  double value(const Eigen::VectorXd& x, const Density& density, double follow) const;
+  /// Gradient by z and the Hessian by z, each triangle's projected to be positive semidefinite.
+  template <typename Density>
+  void derivatives(const Eigen::VectorXd& x, const Density& density, double follow, Eigen::VectorXd& gradient,
+                   Eigen::SparseMatrix<double>& hessian) const;
+
+ private:
+  struct Local {
+    std::array<int, 6> coordinate;           ///< u0 v0 u1 v1 u2 v2 in x
+    Eigen::Matrix<double, 4, 6> toJacobian;  ///< corner coordinates to (Re fz, Im fz, Re fzbar, Im fzbar)
+    double area;
+  };
+  void addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ, double tangentP,
+                   double tangentQ, const Jacobian& j, double follow, Eigen::VectorXd& gradientX,
+                   std::vector<Eigen::Triplet<double>>& entries) const;
+
+  const ConstraintBasis& basis_;
+  std::vector<Local> local_;
+  double totalArea_ = 0;
+};
+
+}  // namespace trimquad
+
+#include "trimquad/seamless/map_energy.inl"

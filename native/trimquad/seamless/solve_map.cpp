@@ -1,0 +1,234 @@
+#include "trimquad/seamless/solve_map.h"
+
+#include <cmath>
+#include <complex>
+#include <optional>
+
+#include "trimquad/base/error.h"
+#include "trimquad/base/sparse_solver.h"
+#include "trimquad/seamless/convex_start.h"
+#include "trimquad/seamless/map_energy.h"
+
+namespace trimquad {
+namespace {
+
+constexpr double kFollow = 1.0;  // weight of the distance to the target beside symmetric Dirichlet energy
+
+/// One projected Newton step on `density`, with backtracking. Returns the relative decrease of the energy.
+template <typename Density>
+double newtonStep(const MapEnergy& energy, const SeamBasis& basis, const Density& density, double follow,
+                  bool keepInjective, SparseSolver& solver, Eigen::VectorXd& z) {
+  const Eigen::VectorXd x = energy.coordinates(z);
+  Eigen::VectorXd gradient;
+  Eigen::SparseMatrix<double> hessian;
+  energy.derivatives(x, density, follow, gradient, hessian);
+  double ridge = 1e-10 * hessian.diagonal().mean();
+  for (;;) {
+    for (int i = 0; i < hessian.rows(); ++i) hessian.coeffRef(i, i) += ridge;
+    if (solver.tryFactorize(hessian)) break;
+    ridge *= 100;
+    if (!(ridge < 1e10 * hessian.diagonal().mean())) return 0;
+  }
+  const Eigen::VectorXd direction = -solver.solve(gradient);
+  const double slope = gradient.dot(direction), before = energy.value(x, density, follow);
+  if (!(slope < 0)) return 0;
+  const Eigen::VectorXd directionX = basis.basis().matrix() * direction;
+  double step = 1;
+  if (keepInjective) step = std::min(step, 0.9 * energy.stepToCollapse(x, directionX));
+  for (int halving = 0; halving < 40; ++halving, step /= 2) {
+    const double after = energy.value(x + step * directionX, density, follow);
+    if (after <= before + 1e-4 * step * slope) {
+      z += step * direction;
+      return (before - after) / before;
+    }
+  }
+  return 0;
+}
+
+/// Newton steps on the foldover-free energy until no triangle is flipped; whether that was reached.
+bool untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
+              const Progress& progress) {
+  SparseSolver solver("seamless");
+  double least = energy.smallestDeterminant(energy.coordinates(z));
+  int stalled = 0;
+  constexpr int kRounds = 40, kStepsPerRound = 8;
+  for (int round = 0; round < kRounds && stalled < 6; ++round) {
+    const double depth = std::min(0.0, least), epsilon = std::sqrt(1e-12 + 0.04 * depth * depth);
+    const auto density = [&](double I, double D) { return foldoverFree(I, D, epsilon); };
+    const double roundStart = least;
+    for (int step = 0; step < kStepsPerRound; ++step) {
+      progress.check();
+      const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
+      ++iterations;
+      const Eigen::VectorXd x = energy.coordinates(z);
+      least = energy.smallestDeterminant(x);
+      if (least > 0) return true;
+      if (least > roundStart / 2 || decrease < 1e-5) break;
+    }
+    stalled = least > roundStart * (1 - 1e-3) ? 0 : stalled + 1;
+  }
+  return false;
+}
+
+/// The first interior vertex that the map winds around more or less often than its index says. Positive
+/// triangles alone do not exclude that: a fan can wind around its vertex twice.
+std::optional<VertexHandle> wrongCone(const SurfaceMesh& mesh, const std::vector<int>& index,
+                                      const SeamBasis& basis, const Eigen::VectorXd& x) {
+  const auto image = [&](HalfedgeHandle h) {
+    return Eigen::Vector2d(x[basis.coordinate(basis.wedge(h), 0)], x[basis.coordinate(basis.wedge(h), 1)]);
+  };
+  for (const auto v : mesh.vertices()) {
+    if (mesh.is_boundary(v)) continue;
+    double angle = 0;
+    for (const auto h : mesh.voh_range(v)) {
+      const Eigen::Vector2d a = image(mesh.next_halfedge_handle(h)) - image(h),
+                            b = image(mesh.prev_halfedge_handle(h)) - image(h);
+      angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    }
+    if (std::lround(angle / (M_PI / 2)) != 4 - index[v.idx()]) return v;
+  }
+  return std::nullopt;
+}
+
+/// The map turned as a whole so that it follows the target best, within `quarters` only where the map has a
+/// period.
+void turnTowardsTarget(const MapEnergy& energy, const SurfaceMesh& mesh, const SeamBasis& basis,
+                       bool quarters, Eigen::VectorXd& x) {
+  std::complex<double> sum = 0;
+  for (const auto f : mesh.faces()) {
+    const auto j = energy.jacobian(f.idx(), x);
+    sum += std::complex<double>(j.fzReal, j.fzImag);
+  }
+  double angle = -std::arg(sum);
+  if (quarters) angle = std::round(angle / (M_PI / 2)) * (M_PI / 2);
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (int i = 0; i < int(x.size()) / 2; ++i) {
+    const double u = x[2 * i], v = x[2 * i + 1];
+    x[2 * i] = c * u - s * v;
+    x[2 * i + 1] = s * u + c * v;
+  }
+  const Eigen::Vector2d origin(x[basis.coordinate(0, 0)], x[basis.coordinate(0, 1)]);
+  for (int w = 0; w < basis.wedgeCount(); ++w)
+    for (int axis = 0; axis < 2; ++axis) x[basis.coordinate(w, axis)] -= origin[axis];
+}
+
+/// z of a locally injective map grown from a convex embedding, where the basis admits one.
+std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMesh& mesh,
+                                        const SeamGraph& seams, const MapTarget& target,
+                                        const SeamBasis& basis, const Eigen::VectorXd& poisson) {
+  double area = 0;
+  for (const auto& t : target) {
+    const Eigen::Vector2d a = t[1] - t[0], b = t[2] - t[0];
+    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  std::optional<double> period;
+  Eigen::Vector2d wanted = Eigen::Vector2d::Zero();
+  if (basis.branchCount() > 0) {
+    const Eigen::VectorXd x = energy.coordinates(poisson);
+    wanted = {x[basis.translation(0, 0)], x[basis.translation(0, 1)]};
+    period = wanted.norm();
+  }
+  // The seam may be crossed along u or against it: one of the two signs gives positive triangles.
+  for (const double sign : {1.0, -1.0}) {
+    if (period) period = sign * std::abs(*period);
+    auto x = convexStart(mesh, seams, basis, area, period);
+    if (!x) return std::nullopt;
+    if (energy.flipped(*x) > 0) continue;
+    if (period) {
+      // Turn so that the period points where the basis has it.
+      const double angle = std::atan2(wanted.y(), wanted.x()) - (sign > 0 ? 0 : M_PI);
+      const int quarter = int(std::lround(angle / (M_PI / 2))) & 3;
+      for (int i = 0; i < int(x->size()) / 2; ++i) {
+        const Eigen::Vector2d p((*x)[2 * i], (*x)[2 * i + 1]);
+        const Eigen::Vector2d turned[] = {p, {-p.y(), p.x()}, -p, {p.y(), -p.x()}};
+        (*x)[2 * i] = turned[quarter].x();
+        (*x)[2 * i + 1] = turned[quarter].y();
+      }
+      const Eigen::Vector2d origin((*x)[basis.coordinate(0, 0)], (*x)[basis.coordinate(0, 1)]);
+      for (int w = 0; w < basis.wedgeCount(); ++w)
+        for (int axis = 0; axis < 2; ++axis) (*x)[basis.coordinate(w, axis)] -= origin[axis];
+    } else {
+      turnTowardsTarget(energy, mesh, basis, false, *x);
+    }
+    const Eigen::VectorXd z = basis.basis().restrict(*x);
+    if (energy.flipped(energy.coordinates(z)) == 0) return z;
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void throwStillFlipped(const SurfaceMesh& mesh, const std::vector<int>& index,
+                                    const SeamBasis& basis, const MapEnergy& energy, const Eigen::VectorXd& x,
+                                    const std::string& stage) {
+  for (const auto f : mesh.faces())
+    if (!(energy.jacobian(f.idx(), x).det() > 0))
+      throw stageError(stage,
+                       std::to_string(energy.flipped(x)) +
+                           " triangles stay turned over in the map; a finer or smoother mesh may help",
+                       "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
+  const auto v = wrongCone(mesh, index, basis, x);
+  TRIMQUAD_ASSERT(v.has_value());
+  throw stageError(stage, "the map winds around a vertex twice; a finer or smoother mesh may help",
+                   "vertex " + std::to_string(v->idx()), mesh.point(*v));
+}
+
+}  // namespace
+
+Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis) {
+  // The squared distance to the target alone: its first Newton step from anywhere is the solution.
+  const MapEnergy energy(mesh, target, basis);
+  const auto none = [](double, double) { return MapDensity{0, 0, 0, 0, 0}; };
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(basis.basis().freeCount()), gradient;
+  Eigen::SparseMatrix<double> hessian;
+  energy.derivatives(energy.coordinates(z), none, 1, gradient, hessian);
+  SparseSolver solver("seamless");
+  solver.factorize(hessian);
+  return z - solver.solve(gradient);
+}
+
+Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
+                         const std::vector<int>& index, const SeamBasis& basis, const std::string& stage,
+                         MapCounters& counters, const Progress& progress) {
+  const MapEnergy energy(mesh, target, basis);
+  const Eigen::VectorXd poisson = poissonMap(mesh, target, basis);
+  progress.report(0.2);
+  Eigen::VectorXd z = poisson;
+  counters.flippedBefore = energy.flipped(energy.coordinates(z));
+  const bool positive =
+      counters.flippedBefore == 0 || untangle(energy, basis, z, counters.untangleIterations, progress);
+  if (!positive || wrongCone(mesh, index, basis, energy.coordinates(z))) {
+    const auto grown = grownMap(energy, mesh, seams, target, basis, poisson);
+    if (!grown) throwStillFlipped(mesh, index, basis, energy, energy.coordinates(z), stage);
+    z = *grown;
+    counters.convexStart = true;
+  }
+  progress.report(0.5);
+  counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
+  SparseSolver solver(stage);
+  const int most = counters.convexStart ? 200 : 50;
+  for (int i = 0; i < most; ++i) {
+    const double decrease = newtonStep(energy, basis, symmetricDirichlet, kFollow, true, solver, z);
+    ++counters.iterations;
+    progress.report(0.5 + 0.5 * i / most);
+    if (decrease < 1e-4) break;
+  }
+  counters.distortionEnd = energy.meanSymmetricDirichlet(energy.coordinates(z));
+  return z;
+}
+
+Parametrization exactMap(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z,
+                         bool integer) {
+  Parametrization map;
+  map.mesh = mesh;
+  const Eigen::VectorXd x = basis.basis().matrix() * z + basis.basis().offset();
+  map.scale = FixedScale::fitting(x.size() > 0 ? x.cwiseAbs().maxCoeff() : 1);
+  const auto exact = basis.basis().evaluateExact(z, map.scale.bits);
+  map.corner.resize(mesh.n_halfedges());
+  for (const auto h : mesh.halfedges())
+    if (!mesh.is_boundary(h))
+      map.corner[h.idx()] = {exact[basis.coordinate(basis.wedge(h), 0)],
+                             exact[basis.coordinate(basis.wedge(h), 1)]};
+  verify(map, integer);
+  return map;
+}
+
+}  // namespace trimquad

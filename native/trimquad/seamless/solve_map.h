@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "trimquad/base/progress.h"
+#include "trimquad/seamless/seam_basis.h"
+#include "trimquad/seamless/seamless_map.h"
+
+namespace trimquad {
+
+/// The Poisson map: the least-squares fit of the target over the basis, z. Triangles may be flipped.
+Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis);
+
+/// The locally injective map nearest to the target over the basis, z: Poisson, then untangling, then, where
+/// that fails on a region without singularities, growth from a convex embedding; then Newton steps on
+/// symmetric Dirichlet energy plus distance to the target. (The ladder of algorithms.md, section 2) \param
+/// index  singularity index per vertex; the map's cone angles are (4 - index) * 90 degrees \param stage named
+/// in the Error(Stage) that is thrown where no rung holds
+Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
+                         const std::vector<int>& index, const SeamBasis& basis, const std::string& stage,
+                         MapCounters& counters, const Progress& progress);
+
+/// The map in fixed-point numbers, at the finest scale that holds it; verified.
+Parametrization exactMap(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z,
+                         bool integer);
+
+}  // namespace trimquad

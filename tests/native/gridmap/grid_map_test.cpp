@@ -1,0 +1,102 @@
+#include "trimquad/gridmap/grid_map.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "support/sample_regions.h"
+#include "trimquad/base/error.h"
+
+namespace trimquad {
+namespace {
+
+GridMap mapOf(const Region& r, double edgeLength) {
+  const CrossField field = crossField(r, Progress());
+  return gridMap(seamlessMap(r, field, edgeLength, Progress()), Progress());
+}
+
+/// Translation of the seam that a tube's map has, in quads (as long as it has one).
+Eigen::Vector2d period(const GridMap& map) {
+  for (const auto h : map.mesh.halfedges()) {
+    if (map.mesh.is_boundary(map.mesh.edge_handle(h))) continue;
+    const auto t = map.transition(h);
+    if (!t.isIdentity()) return map.scale.toQuads(t.translation);
+  }
+  return {0, 0};
+}
+
+TEST(GridMap, flatSheetIsAnIsometry) {
+  const GridMap map = mapOf(sample::region(sample::sheet(10, 10, sample::flat)), 0.1);
+  EXPECT_NEAR(map.counters.distortionEnd, 4, 1e-9);
+  EXPECT_EQ(map.counters.flippedBefore, 0);
+}
+
+TEST(GridMap, wavySheetIsValidAndNearlyIsometric) {
+  const GridMap map = mapOf(sample::region(sample::sheet(40, 40, sample::wavy)), 0.3);
+  verify(map, true);
+  EXPECT_LT(map.counters.distortionEnd, 4.8);
+}
+
+TEST(GridMap, tubeHasAWholePeriodAlongOneAxis) {
+  for (const auto& shape : {sample::cylinder, sample::elbow}) {
+    const GridMap map = mapOf(sample::region(sample::tube(40, 30, shape)), 0.23);
+    const Eigen::Vector2d t = period(map);
+    EXPECT_EQ(std::min(std::abs(t.x()), std::abs(t.y())), 0);
+    const double whole = std::max(std::abs(t.x()), std::abs(t.y()));
+    EXPECT_EQ(whole, std::round(whole));
+    EXPECT_NEAR(whole, 2 * M_PI / 0.23, 4);
+  }
+}
+
+TEST(GridMap, tubeThinnerThanAQuadKeepsOne) {
+  const GridMap map = mapOf(sample::region(sample::tube(24, 12, sample::cylinder)), 30);
+  const Eigen::Vector2d t = period(map);
+  EXPECT_EQ(std::max(std::abs(t.x()), std::abs(t.y())), 1);
+}
+
+TEST(GridMap, holesLeaveTheMapInOneChart) {
+  const GridMap map = mapOf(sample::region(sample::sheet(40, 40, sample::wavy,
+                                                         [](double s, double t) {
+                                                           return std::hypot(s - 0.3, t - 0.3) > 0.1 &&
+                                                                  std::hypot(s - 0.7, t - 0.6) > 0.15;
+                                                         })),
+                            0.3);
+  EXPECT_EQ(period(map), Eigen::Vector2d(0, 0));
+}
+
+TEST(GridMap, domeBeyondTheEquatorUntangles) {
+  for (const double degrees : {60.0, 90.0, 120.0}) {
+    const GridMap map = mapOf(
+        sample::region(sample::sheet(30, 30, sample::dome(degrees / 180 * M_PI / std::sqrt(2.0)))), 0.1);
+    verify(map, true);
+  }
+}
+
+TEST(GridMap, roughRandomSurfacesAlwaysGetAValidMap) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 0.02 * double(seed % 10));
+    const int n = 4 + int(random() % 8);
+    const bool closed = seed % 3 == 0;
+    auto soup = closed ? sample::tube(n + 3, n, sample::cylinder) : sample::sheet(n, n, sample::flat);
+    for (auto& p : soup.points) p += Eigen::Vector3d(noise(random), noise(random), noise(random));
+    verify(mapOf(sample::region(soup), 0.05 + 0.1 * double(random() % 5)), true);
+  }
+}
+
+TEST(GridMap, isTheSameFromRunToRun) {
+  const Region r = sample::region(sample::tube(30, 30, sample::elbow));
+  EXPECT_EQ(mapOf(r, 0.2).corner, mapOf(r, 0.2).corner);
+}
+
+TEST(GridMap, stopsWhenCancelled) {
+  const Region r = sample::region(sample::sheet(30, 30, sample::wavy));
+  const CrossField field = crossField(r, Progress());
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(seamlessMap(r, field, 0.2, progress), Error);
+}
+
+}  // namespace
+}  // namespace trimquad
