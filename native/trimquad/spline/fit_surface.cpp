@@ -1,0 +1,281 @@
+#include "trimquad/spline/fit_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "trimquad/base/error.h"
+#include "trimquad/spline/knot_refinement.h"
+#include "trimquad/spline/spline_space.h"
+#include "trimquad/spline/surface_samples.h"
+
+namespace trimquad {
+namespace {
+
+constexpr int kMaxRounds = 100;
+constexpr int kMaxPoles = 100000;
+/// Rounds of parameter correction on the same knots, and the part of the deviation that one has to leave at
+/// most for another to be worth it.
+constexpr int kMaxCorrections = 4;
+constexpr double kCorrectionPays = 0.85;
+/// Refinements in a row that may bring less than a fifth.
+constexpr int kPatience = 4;
+
+struct Deviation {
+  double max = 0, rms = 0;
+  int worst = -1;      ///< index of the sample
+  int turnedOver = 0;  ///< samples where the surface's normal points the other way
+  int firstTurned = -1;
+};
+
+/// u of the line at which a closed chart is cut: a whole quad, where the line crosses the region in the
+/// fewest pieces; the middle of the longest row of such lines, for the fit moves the boundary a little.
+Quanta seamOf(const GridMap& map, const Chart& chart) {
+  const Quanta one = chart.scale.one(), period = *chart.period;
+  const int lines = int(period / one);
+  std::vector<int> crossings(lines + 1, 0);
+  const auto floorDivide = [](Quanta a, Quanta b) { return a / b - (a % b < 0); };
+  std::vector<int> count(lines, 0);
+  for (const auto h : map.mesh.halfedges()) {
+    if (!map.mesh.is_boundary(h)) continue;
+    const HalfedgeHandle inner = map.mesh.opposite_halfedge_handle(h);
+    const Quanta a = chart.corner[inner.idx()].u,
+                 b = chart.corner[map.mesh.next_halfedge_handle(inner).idx()].u;
+    for (Quanta line = floorDivide(std::min(a, b), one) + 1; line * one <= std::max(a, b); ++line)
+      ++count[((line % lines) + lines) % lines];
+  }
+  const int fewest = *std::min_element(count.begin(), count.end());
+  int best = 0, bestRun = 0;
+  for (int start = 0; start < lines; ++start) {
+    int run = 0;
+    while (run < lines && count[(start + run) % lines] == fewest) ++run;
+    if (run <= bestRun) continue;
+    bestRun = run;
+    best = run == lines ? 0 : (start + run / 2) % lines;
+  }
+  return best * one;
+}
+
+SplineLine initialLine(int degree, double first, double last, double span, bool closed) {
+  SplineLine line{degree, closed, {}};
+  const double length = last - first;
+  int spans = std::max(1, int(std::lround(length / span)));
+  if (closed) spans = std::max(spans, degree + 1);
+  while (closed && spans > length && spans & (spans - 1))
+    ++spans;  // under one quad a power of two, to be exact
+  for (int i = 0; i <= spans; ++i) {
+    const double at = length * i / spans;
+    line.breaks.push_back(first + (spans <= length ? std::round(at) : at));
+  }
+  return line;
+}
+
+/// The coarsest space: two spans along the longer side of the domain, four around a tube.
+SplineSpace initialSpace(const GridMap& map, const Chart& chart, double seam, int degree) {
+  Quanta low[2], high[2];
+  bool first = true;
+  for (const auto h : map.mesh.halfedges()) {
+    if (map.mesh.is_boundary(h)) continue;
+    const FixedVector x = chart.corner[h.idx()];
+    for (int axis = 0; axis < 2; ++axis) {
+      low[axis] = first ? x[axis] : std::min(low[axis], x[axis]);
+      high[axis] = first ? x[axis] : std::max(high[axis], x[axis]);
+    }
+    first = false;
+  }
+  const auto& scale = chart.scale;
+  const double lengthU = scale.toQuads(high[0] - low[0]), lengthV = scale.toQuads(high[1] - low[1]);
+  // Trim curves are intersections with neighbours and leave the region's image a little.
+  const double room = std::max(0.5, 0.01 * std::max(lengthU, lengthV));
+  double u0 = std::floor(scale.toQuads(low[0]) - room), u1 = std::ceil(scale.toQuads(high[0]) + room);
+  const double v0 = std::floor(scale.toQuads(low[1]) - room), v1 = std::ceil(scale.toQuads(high[1]) + room);
+  if (chart.period) {
+    u0 = seam;
+    u1 = seam + scale.toQuads(*chart.period);
+  }
+  const double span = chart.period ? (u1 - u0) / 4 : std::max(u1 - u0, v1 - v0) / 2;
+  return {initialLine(degree, u0, u1, span, chart.period.has_value()),
+          initialLine(degree, v0, v1, span, false)};
+}
+
+/// Sets each sample's distance and, unless the foot lies more than a knot interval away, moves its parameter
+/// there.
+Deviation measure(const SplineSurface& surface, const SplineSpace& space, std::vector<SurfaceSample>& samples,
+                  const Progress& progress) {
+  Deviation result;
+  double sum = 0;
+  for (int i = 0; i < int(samples.size()); ++i) {
+    if (i % 4096 == 0) progress.check();
+    auto& s = samples[i];
+    const Eigen::Vector2d foot = surface.footPoint(s.point, s.parameter);
+    const auto jet = surface.jet(foot[0], foot[1]);
+    const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
+    const double distance = d.norm();
+    s.distance = d.dot(normal) < 0 ? -distance : distance;
+    sum += distance * distance;
+    if (result.worst < 0 || distance > result.max) {
+      result.max = distance;
+      result.worst = i;
+    }
+    if (!(normal.dot(s.normal) > 0)) {
+      if (result.turnedOver++ == 0) result.firstTurned = i;
+      continue;
+    }
+    Eigen::Vector2d move = (foot - s.parameter).cwiseAbs();
+    if (surface.closedU) move[0] = std::min(move[0], surface.lastU() - surface.firstU() - move[0]);
+    if (move[0] <= space.u.width(space.u.spanOf(foot[0])) &&
+        move[1] <= space.v.width(space.v.spanOf(foot[1])))
+      s.parameter = foot;
+  }
+  result.rms = std::sqrt(sum / double(std::max<size_t>(1, samples.size())));
+  return result;
+}
+
+std::vector<Eigen::Vector2d> failing(const std::vector<SurfaceSample>& samples, double tolerance) {
+  std::vector<Eigen::Vector2d> result;
+  for (const auto& s : samples)
+    if (!(std::abs(s.distance) <= tolerance)) result.push_back(s.parameter);
+  return result;
+}
+
+std::string shortNumber(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+Error unreachable(const Region& region, double tolerance, double reached, int poles,
+                  const Eigen::Vector3d& where) {
+  return stageError("fit",
+                    "the tolerance " + shortNumber(tolerance) + " cannot be met, the surface comes within " +
+                        shortNumber(reached) + " with " + std::to_string(poles) +
+                        " poles; allow a larger tolerance or use a smaller edge length",
+                    region.name, where);
+}
+
+/// The fit's state between rounds.
+class Fit {
+ public:
+  Fit(const Region& region, const GridMap& map, const FitOptions& options, const Chart& chart, double seam,
+      const Progress& progress)
+      : region_(region),
+        tolerance_(options.tolerance),
+        progress_(progress),
+        space_(initialSpace(map, chart, seam, options.degree)),
+        samples_(region, map, chart, seam, progress) {
+    const double quad = std::sqrt(surfaceArea(map.mesh) / samples_.chartArea());
+    const double inQuads = tolerance_ / quad;
+    // With the energy as an integral over the same plane as the squared distance, the deviation that it costs
+    // is below 3 % of the tolerance times the surface's bending per quad.
+    fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
+    fairness_.withoutData = std::max(1e3 * fairness_.withData, 1e-9);
+    narrowest_ = std::exp2(std::floor(std::log2(samples_.triangleExtent() / 4)));
+  }
+
+  /// Runs rounds until the tolerance holds.
+  FittedSurface run() {
+    for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
+      solve();
+      if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified()) return std::move(result_);
+      if (correctionPays()) continue;
+      refine();
+    }
+    throw unreachable(region_, tolerance_, best_, space_.poles(), position());
+  }
+
+ private:
+  void solve() {
+    samples_.refine(space_, progress_);
+    std::vector<Datum> data;
+    data.reserve(samples_.samples.size());
+    for (const auto& s : samples_.samples) data.push_back({s.parameter, s.point, s.weight});
+    auto surface = space_.leastSquares(data, fairness_, progress_);
+    for (int attempt = 0; !surface && attempt < 4; ++attempt) {
+      stiffen(100);
+      surface = space_.leastSquares(data, fairness_, progress_);
+    }
+    if (!surface) throw stageError("fit", "the normal equations of the surface are singular", region_.name);
+    result_.surface = std::move(*surface);
+    previous_ = deviation_;
+    deviation_ = measure(result_.surface, space_, samples_.samples, progress_);
+    failing_ = failing(samples_.samples, tolerance_);
+    if (rounds_ == 1) start_ = best_ = deviation_.max;
+    best_ = std::min(best_, deviation_.max);
+    if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
+  }
+
+  bool verified() {
+    auto control = samples_.control(space_, progress_);
+    const Deviation found = measure(result_.surface, space_, control, progress_);
+    result_.maxDeviation = std::max(found.max, deviation_.max);
+    result_.rmsDeviation = found.rms;
+    result_.rounds = rounds_;
+    if (found.max <= tolerance_ && found.turnedOver == 0) return true;
+    failing_ = failing(control, tolerance_);
+    deviation_.turnedOver = found.turnedOver;
+    return false;
+  }
+
+  bool correctionPays() {
+    if (deviation_.max <= tolerance_ || corrections_ >= kMaxCorrections) return false;
+    if (corrections_ > 0 && deviation_.max > kCorrectionPays * previous_.max &&
+        deviation_.rms > kCorrectionPays * previous_.rms)
+      return false;
+    ++corrections_;
+    return true;
+  }
+
+  void refine() {
+    if (failing_.empty()) {
+      // Within tolerance, but turned over somewhere.
+      if (++stiffened_ > 3)
+        throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
+                         region_.name, samples_.samples[std::max(0, deviation_.firstTurned)].point);
+      stiffen(30);
+      return;
+    }
+    idle_ = best_ < 0.8 * lastBest_ ? 0 : idle_ + 1;
+    if (idle_ == 0) lastBest_ = best_;
+    if (idle_ > kPatience || !refineKnots(space_, samples_, failing_, narrowest_) ||
+        space_.poles() > kMaxPoles)
+      throw unreachable(region_, tolerance_, best_, int(result_.surface.poles.size()), position());
+    corrections_ = 0;
+  }
+
+  void stiffen(double factor) {
+    fairness_.withData *= factor;
+    fairness_.withoutData *= factor;
+  }
+
+  Eigen::Vector3d position() const { return samples_.samples[std::max(0, deviation_.worst)].point; }
+
+  const Region& region_;
+  double tolerance_;
+  const Progress& progress_;
+  SplineSpace space_;
+  SurfaceSamples samples_;
+  Fairness fairness_;
+  double narrowest_ = 0;
+  FittedSurface result_;
+  Deviation deviation_, previous_;
+  std::vector<Eigen::Vector2d> failing_;
+  double start_ = 0, best_ = 0, lastBest_ = 1e300;
+  int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0;
+};
+
+}  // namespace
+
+FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOptions& options,
+                         const Progress& progress) {
+  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
+    throw inputError("fit", "the tolerance must be a positive number");
+  if (options.degree < 2 || options.degree > 5) throw inputError("fit", "the degree must be 2, 3, 4 or 5");
+  Chart unrolled = chart(map);
+  const double seam = unrolled.period ? unrolled.scale.toQuads(seamOf(map, unrolled)) : 0;
+  FittedSurface fitted = Fit(region, map, options, unrolled, seam, progress).run();
+  fitted.chart = std::move(unrolled);
+  return fitted;
+}
+
+}  // namespace trimquad

@@ -1,0 +1,71 @@
+#include "trimquad/spline/knot_refinement.h"
+
+#include <cmath>
+
+namespace trimquad {
+namespace {
+
+/// A direction takes part once the residual's variation along it is this part of the variation along the
+/// other.
+constexpr double kTakesPart = 0.4;
+
+/// By knot rectangle: how much the residual varies along u and v, squared, for a step of one interval.
+std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space, const SurfaceSamples& samples) {
+  std::vector<Eigen::Array2d> variation(size_t(space.u.spans()) * space.v.spans(), Eigen::Array2d::Zero());
+  for (const auto& cell : samples.cells()) {
+    const SurfaceSample &p = samples.samples[cell[0]], &q = samples.samples[cell[1]],
+                        &r = samples.samples[cell[2]];
+    const Eigen::Vector2d a = samples.difference(p.parameter, q.parameter),
+                          b = samples.difference(p.parameter, r.parameter);
+    const double area = a.x() * b.y() - a.y() * b.x();
+    if (!(area > 0)) continue;
+    const double da = q.distance - p.distance, db = r.distance - p.distance;
+    const Eigen::Array2d gradient((da * b.y() - db * a.y()) / area, (db * a.x() - da * b.x()) / area);
+    const int i = space.u.spanOf(p.parameter[0]), j = space.v.spanOf(p.parameter[1]);
+    const Eigen::Array2d step(space.u.width(i), space.v.width(j));
+    variation[i + size_t(space.u.spans()) * j] += area * (gradient * step).square();
+  }
+  return variation;
+}
+
+bool splits(const SplineLine& line, int span, double narrowest) {
+  return line.width(span) >= 2 * narrowest;
+}
+
+void halve(SplineLine& line, const std::vector<char>& marked) {
+  std::vector<double> breaks;
+  for (int i = 0; i < line.spans(); ++i) {
+    const double a = line.breaks[i], b = line.breaks[i + 1];
+    breaks.push_back(a);
+    if (!marked[i]) continue;
+    const double middle = 0.5 * (a + b);
+    breaks.push_back(b - a >= 2 ? std::floor(middle) : middle);
+  }
+  breaks.push_back(line.breaks.back());
+  line.breaks = std::move(breaks);
+}
+
+}  // namespace
+
+bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
+                 const std::vector<Eigen::Vector2d>& failing, double narrowest) {
+  const auto variation = residualVariation(space, samples);
+  std::vector<char> inU(space.u.spans(), 0), inV(space.v.spans(), 0);
+  bool any = false;
+  for (const auto& x : failing) {
+    const int i = space.u.spanOf(x[0]), j = space.v.spanOf(x[1]);
+    const Eigen::Array2d here = variation[i + size_t(space.u.spans()) * j];
+    const double ratio = kTakesPart * kTakesPart;
+    const bool canU = splits(space.u, i, narrowest), canV = splits(space.v, j, narrowest);
+    const bool wantU = here[0] >= ratio * here[1], wantV = here[1] >= ratio * here[0];
+    const bool u = canU && (wantU || !canV), v = canV && (wantV || !canU);
+    inU[i] |= u;
+    inV[j] |= v;
+    any |= u || v;
+  }
+  halve(space.u, inU);
+  halve(space.v, inV);
+  return any;
+}
+
+}  // namespace trimquad

@@ -1,0 +1,210 @@
+#include "trimquad/spline/spline_space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "trimquad/spline/block_cholesky.h"
+
+namespace trimquad {
+namespace {
+
+constexpr int kMaxLocal = kMaxSplineDegree + 1;
+
+/// Where the unknowns stand in the linear system: whole lines of poles one after the other, along the
+/// direction in which blocks of neighbouring lines are smaller. A closed direction is folded up (0, n - 1, 1,
+/// n - 2, ...), which doubles its band instead of coupling the last line to the first.
+struct Numbering {
+  bool alongU;
+  int lines, lineSize, blockSize;
+  bool folded;
+
+  explicit Numbering(const SplineSpace& space) {
+    const int blockU = (space.u.closed ? 2 : 1) * space.u.degree * space.v.unknowns();
+    const int blockV = space.v.degree * space.u.unknowns();
+    alongU = blockU < blockV;
+    blockSize = alongU ? blockU : blockV;
+    lines = alongU ? space.u.unknowns() : space.v.unknowns();
+    lineSize = alongU ? space.v.unknowns() : space.u.unknowns();
+    folded = alongU && space.u.closed;
+  }
+
+  int operator()(int i, int j) const {
+    const int line = alongU ? i : j, inLine = alongU ? j : i;
+    const int place = !folded ? line : 2 * line < lines ? 2 * line : 2 * (lines - 1 - line) + 1;
+    return place * lineSize + inLine;
+  }
+};
+
+/// The unknowns whose functions do not vanish on one knot rectangle, at a + (degreeU + 1) * b.
+struct LocalUnknowns {
+  int count = 0;
+  std::array<int, kMaxLocal * kMaxLocal> index;
+
+  LocalUnknowns(const SplineSpace& space, const Numbering& number, int spanU, int spanV) {
+    for (int b = 0; b <= space.v.degree; ++b)
+      for (int a = 0; a <= space.u.degree; ++a) {
+        const int i = space.u.closed ? (spanU + a) % space.u.unknowns() : spanU + a;
+        index[count++] = number(i, spanV + b);
+      }
+  }
+
+  void add(const Eigen::MatrixXd& local, BlockCholesky& matrix) const {
+    for (int y = 0; y < count; ++y)
+      for (int x = 0; x < count; ++x)
+        if (index[x] >= index[y]) matrix.add(index[x], index[y], local(x, y));
+  }
+};
+
+/// integral over one span of the k-th derivatives' products, for k = 0, 1, 2. Gauss-Legendre, exact.
+std::array<Eigen::MatrixXd, 3> spanProducts(const SplineLine& line, const std::vector<double>& knots,
+                                            int span) {
+  const int n = line.degree + 1;
+  // Nodes of the n-point rule by Newton on the Legendre polynomial.
+  std::array<Eigen::MatrixXd, 3> product;
+  for (auto& m : product) m = Eigen::MatrixXd::Zero(n, n);
+  BasisFunctions basis;
+  for (int q = 0; q < n; ++q) {
+    double x = std::cos(M_PI * (q + 0.75) / (n + 0.5)), slope = 1;
+    for (int step = 0; step < 50; ++step) {
+      double p0 = 1, p1 = x;
+      for (int k = 2; k <= n; ++k) {
+        const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
+        p0 = p1;
+        p1 = p2;
+      }
+      slope = n * (x * p1 - p0) / (x * x - 1);
+      const double move = p1 / slope;
+      x -= move;
+      if (std::abs(move) < 1e-15) break;
+    }
+    const double weight = line.width(span) / ((1 - x * x) * slope * slope);
+    const double t = 0.5 * (line.breaks[span] + line.breaks[span + 1] + x * line.width(span));
+    basisFunctions(knots, line.degree, t, 2, basis);
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < n; ++a)
+        for (int b = 0; b < n; ++b) product[k](a, b) += weight * basis.value[k][a] * basis.value[k][b];
+  }
+  return product;
+}
+
+/// Poles of one row, as the clamped curve over one period with its ends equal bit by bit.
+SpaceCurve clampedPeriod(const SplineLine& line, const std::vector<Eigen::Vector3d>& periodic) {
+  // One span more on both sides of the period, so that its ends are inner knots that can be made full.
+  const int p = line.degree, n = line.unknowns();
+  const double period = line.breaks.back() - line.breaks.front();
+  SpaceCurve extended{p, {}, {}};
+  const auto knotAt = [&](int i) {
+    const int turn = int(std::floor(double(i) / n));
+    return line.breaks[i - turn * n] + turn * period;
+  };
+  for (int i = -p - 1; i <= n + p + 1; ++i) extended.knots.push_back(knotAt(i));
+  for (int i = -1; i <= n + p; ++i) extended.poles.push_back(periodic[((i % n) + n) % n]);
+  SpaceCurve curve = restricted(extended, line.breaks.front(), line.breaks.back());
+  curve.poles.back() = curve.poles.front();
+  return curve;
+}
+
+SplineSurface surfaceOf(const SplineSpace& space, const Numbering& number, const Eigen::MatrixXd& poles) {
+  SplineSurface s;
+  s.degreeU = space.u.degree;
+  s.degreeV = space.v.degree;
+  s.knotsU = space.u.knots();
+  s.knotsV = space.v.knots();
+  s.countU = space.u.unknowns();
+  s.countV = space.v.unknowns();
+  s.closedU = space.u.closed;
+  for (int j = 0; j < s.countV; ++j) {
+    std::vector<Eigen::Vector3d> row;
+    for (int i = 0; i < space.u.unknowns(); ++i) row.push_back(poles.row(number(i, j)));
+    if (space.u.closed) {
+      auto curve = clampedPeriod(space.u, row);
+      row = std::move(curve.poles);
+      s.knotsU = std::move(curve.knots);
+    }
+    s.poles.insert(s.poles.end(), row.begin(), row.end());
+  }
+  s.countU = int(s.knotsU.size()) - s.degreeU - 1;
+  return s;
+}
+
+}  // namespace
+
+int SplineLine::spanOf(double t) const {
+  return int(std::upper_bound(breaks.begin() + 1, breaks.end() - 1, t) - breaks.begin()) - 1;
+}
+
+std::vector<double> SplineLine::knots() const {
+  std::vector<double> result;
+  const int n = spans();
+  const double period = breaks.back() - breaks.front();
+  for (int i = -degree; i <= n + degree; ++i) {
+    if (!closed) {
+      result.push_back(breaks[std::clamp(i, 0, n)]);
+      continue;
+    }
+    const int turn = int(std::floor(double(i) / n));
+    result.push_back(breaks[i - turn * n] + turn * period);
+  }
+  return result;
+}
+
+std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>& data,
+                                                       const Fairness& fairness,
+                                                       const Progress& progress) const {
+  const Numbering number(*this);
+  BlockCholesky matrix(poles(), number.blockSize);
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(poles(), 3);
+  const auto knotsU = u.knots(), knotsV = v.knots();
+
+  // Rounding is relative to the coordinates, so they are taken from the middle of the data.
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const auto& d : data) middle += d.point / double(data.size());
+
+  // Data by knot rectangle, so that each one's products are summed before they go to the matrix.
+  std::vector<std::pair<int, int>> order(data.size());
+  for (int i = 0; i < int(data.size()); ++i)
+    order[i] = {u.spanOf(data[i].parameter[0]) + u.spans() * v.spanOf(data[i].parameter[1]), i};
+  std::sort(order.begin(), order.end());
+
+  std::vector<std::array<Eigen::MatrixXd, 3>> productsU, productsV;
+  for (int i = 0; i < u.spans(); ++i) productsU.push_back(spanProducts(u, knotsU, i));
+  for (int j = 0; j < v.spans(); ++j) productsV.push_back(spanProducts(v, knotsV, j));
+
+  const int nu = u.degree + 1, nv = v.degree + 1;
+  Eigen::MatrixXd local(nu * nv, nu * nv);
+  Eigen::VectorXd value(nu * nv);
+  BasisFunctions bu, bv;
+  auto next = order.begin();
+  for (int j = 0; j < v.spans(); ++j) {
+    progress.check();
+    for (int i = 0; i < u.spans(); ++i) {
+      const LocalUnknowns unknowns(*this, number, i, j);
+      const bool hasData = next != order.end() && next->first == i + u.spans() * j;
+      const double lambda = hasData ? fairness.withData : fairness.withoutData;
+      for (int b = 0; b < nv; ++b)
+        for (int d = 0; d < nv; ++d)
+          local.block(b * nu, d * nu, nu, nu) = lambda * (productsV[j][0](b, d) * productsU[i][2] +
+                                                          2 * productsV[j][1](b, d) * productsU[i][1] +
+                                                          productsV[j][2](b, d) * productsU[i][0]);
+      for (; next != order.end() && next->first == i + u.spans() * j; ++next) {
+        const Datum& d = data[next->second];
+        basisFunctions(knotsU, u.degree, d.parameter[0], 0, bu);
+        basisFunctions(knotsV, v.degree, d.parameter[1], 0, bv);
+        for (int b = 0; b < nv; ++b)
+          for (int a = 0; a < nu; ++a) value[a + nu * b] = bu.value[0][a] * bv.value[0][b];
+        local.selfadjointView<Eigen::Lower>().rankUpdate(value, d.weight);
+        for (int x = 0; x < unknowns.count; ++x)
+          rhs.row(unknowns.index[x]) += d.weight * value[x] * (d.point - middle).transpose();
+      }
+      local.triangularView<Eigen::StrictlyUpper>() = local.transpose();
+      unknowns.add(local, matrix);
+    }
+  }
+  if (!matrix.factorize(progress)) return {};
+  matrix.solveInPlace(rhs);
+  rhs.rowwise() += middle.transpose();
+  return surfaceOf(*this, number, rhs);
+}
+
+}  // namespace trimquad

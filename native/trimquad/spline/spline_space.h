@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "trimquad/base/progress.h"
+#include "trimquad/spline/spline_geometry.h"
+
+namespace trimquad {
+
+/// The splines of one variable with simple knots at `breaks`: over an interval, or closed with their span as
+/// period.
+struct SplineLine {
+  int degree = 3;
+  bool closed = false;
+  std::vector<double> breaks;  ///< increasing; both ends of the domain included
+
+  int spans() const { return int(breaks.size()) - 1; }
+  int unknowns() const { return closed ? spans() : spans() + degree; }
+  double width(int span) const { return breaks[span + 1] - breaks[span]; }
+  /// The span that holds t; of the nearest end for t outside.
+  int spanOf(double t) const;
+  /// Clamped knots; for closed splines the knots continue periodically, function i and i + unknowns() are
+  /// one.
+  std::vector<double> knots() const;
+};
+
+/// A point that the surface is to pass at a given parameter.
+struct Datum {
+  Eigen::Vector2d parameter;
+  Eigen::Vector3d point;
+  double weight;  ///< area of the parameter plane that it stands for, quads^2
+};
+
+/// Weights of the thin-plate energy, relative to an integral of squared distance over the parameter plane.
+struct Fairness {
+  double withData = 0, withoutData = 0;  ///< on knot rectangles that hold data, and on the others
+};
+
+/// Tensor-product splines over a rectangle of the parameter plane.
+struct SplineSpace {
+  SplineLine u, v;
+
+  int poles() const { return u.unknowns() * v.unknowns(); }
+
+  /// The spline surface that minimises sum weight |S - point|^2 + fairness * integral of Suu^2 + 2 Suv^2 +
+  /// Svv^2. Closed splines come out clamped, with end columns of poles that are equal bit by bit. Empty where
+  /// the data and the fairness do not determine it.
+  std::optional<SplineSurface> leastSquares(const std::vector<Datum>& data, const Fairness& fairness,
+                                            const Progress& progress) const;
+};
+
+}  // namespace trimquad
