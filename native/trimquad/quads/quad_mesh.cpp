@@ -65,7 +65,7 @@ std::string writeQuadsObj(const QuadMesh& quads) {
   text += "g trimmed\n";
   for (const auto& cell : quads.cells)
     if (!cell.full)
-      for (const auto& corners : cell.loops.size() > 1 ? cell.simple : cell.loops) polygon(corners);
+      for (const auto& corners : cell.simple.empty() ? cell.loops : cell.simple) polygon(corners);
   if (!quads.featureEdges.empty()) text += "g feature\n";
   for (const auto& [from, to] : quads.featureEdges)
     text += "l " + std::to_string(from.index + 1) + ' ' + std::to_string(to.index + 1) + '\n';

@@ -36,12 +36,13 @@ struct QuadMesh {
   };
   using Polygon = std::vector<QuadPointId>;  ///< counter-clockwise seen from the surface's outer side
   struct Cell {
-    std::vector<Polygon> loops;   ///< the outer loop first; further ones are holes inside the cell
-    std::vector<Polygon> simple;  ///< only with several loops: the cell cut between them into simple polygons
-    bool full;                    ///< a whole quad with four corners
-    double area;                  ///< parametric, as a fraction of a whole cell
-    FaceHandle chart;             ///< triangle in whose chart `corner` holds
-    FixedVector corner;           ///< the cell's lower left grid point, in quads
+    std::vector<Polygon> loops;  ///< the outer loop first; further ones are holes inside the cell
+    std::vector<Polygon>
+        simple;  ///< only with several loops or a loop that touches itself: the cell cut into simple polygons
+    bool full;   ///< a whole quad with four corners
+    double area;         ///< parametric, as a fraction of a whole cell
+    FaceHandle chart;    ///< triangle in whose chart `corner` holds
+    FixedVector corner;  ///< the cell's lower left grid point, in quads
   };
   /// A part of the surface's boundary between consecutive points of a cell.
   struct BoundaryPiece {

@@ -9,14 +9,14 @@
 namespace trimquad {
 namespace {
 
-using Chain = std::vector<LoopCorner>;  // closed
+using Chain = std::vector<PlanarCorner>;  // closed
 
 class Divider {
  public:
-  explicit Divider(const std::vector<std::vector<FixedVector>>& loops) : loops_(loops) {}
+  explicit Divider(const std::vector<Chain>& loops) : loops_(loops) {}
 
   std::vector<Chain> run() {
-    Chain joined = chainOf(0);
+    Chain joined = loops_[0];
     std::vector<bool> waiting(loops_.size(), true);
     waiting[0] = false;
     for (size_t k = 1; k < loops_.size(); ++k) joined = joinNearest(joined, waiting);
@@ -29,86 +29,72 @@ class Divider {
         continue;
       }
       const auto [i, j] = bestDiagonal(chain);
-      open.emplace_back(chain.begin() + i, chain.begin() + j + 1);
-      Chain rest(chain.begin() + j, chain.end());
-      rest.insert(rest.end(), chain.begin(), chain.begin() + i + 1);
+      open.emplace_back(chain.begin() + long(i), chain.begin() + long(j) + 1);
+      Chain rest(chain.begin() + long(j), chain.end());
+      rest.insert(rest.end(), chain.begin(), chain.begin() + long(i) + 1);
       open.push_back(rest);
     }
     return simple;
   }
 
  private:
-  FixedVector at(LoopCorner c) const { return loops_[c.loop][c.corner]; }
-
-  Chain chainOf(int loop) const {
-    Chain chain;
-    for (int k = 0; k < int(loops_[loop].size()); ++k) chain.push_back({loop, k});
-    return chain;
-  }
-
-  /// How often the segment p -> q meets loop edges, other than in its own ends.
-  int crossings(LoopCorner p, LoopCorner q) const {
-    const FixedVector a = at(p), b = at(q);
+  /// How often the segment p -> q meets loop edges and bridges, other than in its own ends.
+  int crossings(const PlanarCorner& p, const PlanarCorner& q) const {
     int count = 0;
-    for (int loop = 0; loop < int(loops_.size()); ++loop)
-      for (int k = 0; k < int(loops_[loop].size()); ++k) {
-        const LoopCorner r{loop, k}, s{loop, int((k + 1) % loops_[loop].size())};
-        count += meets(a, b, r, s, p, q);
-      }
-    for (const auto& [r, s] : bridges_) count += meets(a, b, r, s, p, q);
+    for (const auto& loop : loops_)
+      for (size_t k = 0; k < loop.size(); ++k) count += meets(p, q, loop[k], loop[(k + 1) % loop.size()]);
+    for (const auto& [r, s] : bridges_) count += meets(p, q, r, s);
     return count;
   }
 
-  bool meets(FixedVector a, FixedVector b, LoopCorner r, LoopCorner s, LoopCorner p, LoopCorner q) const {
-    const FixedVector c = at(r), d = at(s);
-    const auto onSegment = [](FixedVector from, FixedVector to, FixedVector x) {
-      return orientation(from, to, x) == 0 && dot(from - x, to - x) < 0;
+  static bool meets(const PlanarCorner& p, const PlanarCorner& q, const PlanarCorner& r,
+                    const PlanarCorner& s) {
+    const auto inside = [](const PlanarCorner& a, const PlanarCorner& b, const PlanarCorner& x) {
+      return x.point != a.point && x.point != b.point && orientation(a.at, b.at, x.at) == 0 &&
+             dot(a.at - x.at, b.at - x.at) <= 0;
     };
-    if (r == p || r == q || s == p || s == q)
-      return (r != p && r != q && onSegment(a, b, c)) || (s != p && s != q && onSegment(a, b, d)) ||
-             (onSegment(c, d, a) || onSegment(c, d, b));
-    const int o1 = orientation(a, b, c), o2 = orientation(a, b, d), o3 = orientation(c, d, a),
-              o4 = orientation(c, d, b);
-    if (o1 * o2 < 0 && o3 * o4 < 0) return true;
-    return onSegment(a, b, c) || onSegment(a, b, d) || onSegment(c, d, a) || onSegment(c, d, b);
+    if (inside(p, q, r) || inside(p, q, s) || inside(r, s, p) || inside(r, s, q)) return true;
+    return orientation(p.at, q.at, r.at) * orientation(p.at, q.at, s.at) < 0 &&
+           orientation(r.at, s.at, p.at) * orientation(r.at, s.at, q.at) < 0;
   }
 
   /// Whether the direction from corner i of the chain to `x` leads into the chain's inside.
   bool leadsInside(const Chain& chain, size_t i, FixedVector x) const {
-    const FixedVector here = at(chain[i]);
-    const FixedVector out = at(chain[(i + 1) % chain.size()]) - here;
-    const FixedVector in = at(chain[(i + chain.size() - 1) % chain.size()]) - here;
+    const FixedVector here = chain[i].at;
+    const FixedVector out = chain[(i + 1) % chain.size()].at - here;
+    const FixedVector in = chain[(i + chain.size() - 1) % chain.size()].at - here;
     return strictlyInsideSector(out, in, x - here);
   }
 
-  WideQuanta squaredDistance(LoopCorner p, LoopCorner q) const { return dot(at(q) - at(p), at(q) - at(p)); }
+  static WideQuanta squaredDistance(const PlanarCorner& p, const PlanarCorner& q) {
+    return dot(q.at - p.at, q.at - p.at);
+  }
 
   /// Joins the chain with the nearest loop that is still apart, by a bridge there and back.
   Chain joinNearest(const Chain& chain, std::vector<bool>& waiting) {
-    using Score = std::tuple<int, WideQuanta>;
+    using Score = std::tuple<int, WideQuanta>;  // crossings, length
     std::optional<Score> best;
-    size_t bestCorner = 0;
-    LoopCorner bestEnd{};
+    size_t bestCorner = 0, bestLoop = 0, bestEnd = 0;
     for (size_t i = 0; i < chain.size(); ++i)
-      for (int loop = 1; loop < int(loops_.size()); ++loop) {
+      for (size_t loop = 1; loop < loops_.size(); ++loop) {
         if (!waiting[loop]) continue;
-        const Chain hole = chainOf(loop);
+        const Chain& hole = loops_[loop];
         for (size_t k = 0; k < hole.size(); ++k) {
           const WideQuanta length = squaredDistance(chain[i], hole[k]);
-          if (best && std::get<0>(*best) == 0 && length >= std::get<1>(*best)) continue;
-          const int wrong = !leadsInside(chain, i, at(hole[k])) + !leadsInside(hole, k, at(chain[i]));
+          if (best && Score{0, length} >= *best) continue;
+          const int wrong = !leadsInside(chain, i, hole[k].at) + !leadsInside(hole, k, chain[i].at);
           const Score score{wrong + crossings(chain[i], hole[k]), length};
           if (best && score >= *best) continue;
-          best = score, bestCorner = i, bestEnd = hole[k];
+          best = score, bestCorner = i, bestLoop = loop, bestEnd = k;
         }
       }
     TRIMQUAD_ASSERT(best);
-    waiting[bestEnd.loop] = false;
-    bridges_.push_back({chain[bestCorner], bestEnd});
-    Chain joined(chain.begin(), chain.begin() + bestCorner + 1);
-    const int size = int(loops_[bestEnd.loop].size());
-    for (int k = 0; k <= size; ++k) joined.push_back({bestEnd.loop, (bestEnd.corner + k) % size});
-    joined.insert(joined.end(), chain.begin() + bestCorner, chain.end());
+    waiting[bestLoop] = false;
+    const Chain& hole = loops_[bestLoop];
+    bridges_.push_back({chain[bestCorner], hole[bestEnd]});
+    Chain joined(chain.begin(), chain.begin() + long(bestCorner) + 1);
+    for (size_t k = 0; k <= hole.size(); ++k) joined.push_back(hole[(bestEnd + k) % hole.size()]);
+    joined.insert(joined.end(), chain.begin() + long(bestCorner), chain.end());
     return joined;
   }
 
@@ -122,7 +108,7 @@ class Divider {
     std::vector<Candidate> candidates;
     for (size_t i = 0; i < n; ++i)
       for (size_t j = i + 2; j < n && j < i + n - 1; ++j) {
-        if (chain[i] == chain[j]) continue;
+        if (chain[i].point == chain[j].point) continue;
         int left = 0;
         for (const auto& [p, q] : twins) {
           const bool inPart = i <= p && q <= j, inRest = (p <= i || p >= j) && (q <= i || q >= j);
@@ -135,7 +121,7 @@ class Divider {
     std::pair<size_t, size_t> ends;
     std::optional<int> fewest;
     for (const auto& [left, larger, length, i, j] : candidates) {
-      const int wrong = !leadsInside(chain, i, at(chain[j])) + !leadsInside(chain, j, at(chain[i])) +
+      const int wrong = !leadsInside(chain, i, chain[j].at) + !leadsInside(chain, j, chain[i].at) +
                         crossings(chain[i], chain[j]);
       if (!fewest || wrong < *fewest) fewest = wrong, ends = {i, j};
       if (wrong == 0) break;
@@ -146,8 +132,8 @@ class Divider {
 
   /// Pairs of positions in the chain that hold the same corner.
   static std::vector<std::pair<size_t, size_t>> repeatedPositions(const Chain& chain) {
-    std::vector<std::pair<LoopCorner, size_t>> sorted;
-    for (size_t i = 0; i < chain.size(); ++i) sorted.push_back({chain[i], i});
+    std::vector<std::pair<int, size_t>> sorted;
+    for (size_t i = 0; i < chain.size(); ++i) sorted.push_back({chain[i].point, i});
     std::sort(sorted.begin(), sorted.end());
     std::vector<std::pair<size_t, size_t>> pairs;
     for (size_t i = 1; i < sorted.size(); ++i)
@@ -155,14 +141,19 @@ class Divider {
     return pairs;
   }
 
-  const std::vector<std::vector<FixedVector>>& loops_;
-  std::vector<std::pair<LoopCorner, LoopCorner>> bridges_;
+  const std::vector<Chain>& loops_;
+  std::vector<std::pair<PlanarCorner, PlanarCorner>> bridges_;
 };
 
 }  // namespace
 
-std::vector<std::vector<LoopCorner>> simplePolygons(const std::vector<std::vector<FixedVector>>& loops) {
-  return Divider(loops).run();
+std::vector<std::vector<int>> simplePolygons(const std::vector<std::vector<PlanarCorner>>& loops) {
+  std::vector<std::vector<int>> polygons;
+  for (const auto& chain : Divider(loops).run()) {
+    auto& polygon = polygons.emplace_back();
+    for (const auto& corner : chain) polygon.push_back(corner.point);
+  }
+  return polygons;
 }
 
 }  // namespace trimquad

@@ -14,7 +14,7 @@ namespace trimquad {
 inline std::vector<QuadMesh::Polygon> polygonsOf(const QuadMesh& quads) {
   std::vector<QuadMesh::Polygon> polygons;
   for (const auto& cell : quads.cells)
-    for (const auto& p : cell.loops.size() > 1 ? cell.simple : cell.loops) polygons.push_back(p);
+    for (const auto& p : cell.simple.empty() ? cell.loops : cell.simple) polygons.push_back(p);
   return polygons;
 }
 
