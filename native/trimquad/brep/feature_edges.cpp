@@ -1,0 +1,201 @@
+#include "trimquad/brep/feature_edges.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numeric>
+
+#include "trimquad/base/error.h"
+#include "trimquad/brep/surface_normal.h"
+
+namespace trimquad {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Triangle = WeldedMesh::Triangle;
+
+constexpr std::array<double, 3> kSamples{1. / 6, 1. / 2, 5. / 6};  // along a side
+
+/// True normal at the fraction `s` of the triangle's side k; `along` false runs it backwards.
+Vector3d normalOnSide(const CadModel& model, const Triangle& triangle, int k, double s, bool along) {
+  const Vector2d &a = triangle.uv[k], &b = triangle.uv[(k + 1) % 3];
+  const Vector2d uv = along ? Vector2d((1 - s) * a + s * b) : Vector2d(s * a + (1 - s) * b);
+  const Vector2d inside = (a + b + triangle.uv[(k + 2) % 3]) / 3;
+  return surfaceNormal(*model.faces[triangle.face].surface, uv, inside);
+}
+
+double areaOf(const WeldedMesh& mesh, const Triangle& triangle) {
+  const Vector3d& a = mesh.vertices[triangle.vertex[0]].point;
+  return 0.5 * (mesh.vertices[triangle.vertex[1]].point - a)
+                   .cross(mesh.vertices[triangle.vertex[2]].point - a)
+                   .norm();
+}
+
+double volumeOf(const WeldedMesh& mesh, const Triangle& triangle, const Vector3d& origin) {
+  return (mesh.vertices[triangle.vertex[0]].point - origin)
+             .dot((mesh.vertices[triangle.vertex[1]].point - origin)
+                      .cross(mesh.vertices[triangle.vertex[2]].point - origin)) /
+         6;
+}
+
+/// Faces joined across edges, each with its orientation relative to the group's first face.
+class FaceGroups {
+ public:
+  explicit FaceGroups(size_t count) : parent_(count), flipped_(count, 0) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int root(int f) const {
+    while (parent_[f] != f) f = parent_[f];
+    return f;
+  }
+  bool flipped(int f) const {
+    bool flip = false;
+    for (; parent_[f] != f; f = parent_[f]) flip ^= bool(flipped_[f]);
+    return flip;
+  }
+  /// False where the faces are joined already and disagree.
+  bool join(int f, int g, bool opposite) {
+    const bool flip = flipped(f) ^ flipped(g) ^ opposite;
+    const int a = root(f), b = root(g);
+    if (a == b) return !flip;
+    parent_[std::max(a, b)] = std::min(a, b);
+    flipped_[std::max(a, b)] = flip;
+    return true;
+  }
+
+ private:
+  std::vector<int> parent_;
+  std::vector<char> flipped_;
+};
+
+bool runsForward(const WeldedMesh& mesh, const std::pair<int, int>& use) {
+  const Triangle& triangle = mesh.triangles[use.first];
+  return mesh.sides[triangle.side[use.second]].from == triangle.vertex[use.second];
+}
+
+}  // namespace
+
+SideUses sideUses(const CadModel& model, const WeldedMesh& mesh) {
+  SideUses uses(mesh.sides.size());
+  for (int t = 0; t < int(mesh.triangles.size()); ++t)
+    for (int k = 0; k < 3; ++k) uses[mesh.triangles[t].side[k]].push_back({t, k});
+  for (size_t s = 0; s < uses.size(); ++s) {
+    if (uses[s].size() <= 2) continue;
+    const auto& side = mesh.sides[s];
+    throw inputError("tessellate",
+                     "more than two faces meet in one edge; convert the solids or shells one by one",
+                     side.cadEdge ? model.edges[*side.cadEdge].name
+                                  : model.faces[mesh.triangles[uses[s][0].first].face].name,
+                     mesh.vertices[side.from].point);
+  }
+  return uses;
+}
+
+std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh) {
+  const auto uses = sideUses(model, mesh);
+  FaceGroups groups(model.faces.size());
+  std::vector<char> open(model.faces.size(), 0);
+  for (size_t s = 0; s < uses.size(); ++s) {
+    if (uses[s].size() == 1) open[mesh.triangles[uses[s][0].first].face] = 1;
+    if (uses[s].size() != 2) continue;
+    const int f = mesh.triangles[uses[s][0].first].face, g = mesh.triangles[uses[s][1].first].face;
+    const bool opposite = runsForward(mesh, uses[s][0]) == runsForward(mesh, uses[s][1]);
+    if (!groups.join(f, g, opposite))
+      throw inputError("tessellate", "the surface has one side only (a Moebius strip); cut it open first",
+                       model.edges[mesh.sides[s].cadEdge.value()].name,
+                       mesh.vertices[mesh.sides[s].from].point);
+  }
+
+  // Signed sums per group, with every face as its group's first face has it.
+  std::vector<double> majority(model.faces.size(), 0), volume(model.faces.size(), 0);
+  std::vector<char> openGroup(model.faces.size(), 0);
+  for (size_t f = 0; f < open.size(); ++f)
+    if (open[f]) openGroup[groups.root(int(f))] = 1;
+  const Vector3d origin = mesh.vertices.front().point;
+  for (const auto& triangle : mesh.triangles) {
+    const int root = groups.root(triangle.face);
+    const double flip = groups.flipped(triangle.face) ? -1 : 1;
+    majority[root] += areaOf(mesh, triangle) * flip * (model.faces[triangle.face].reversed ? -1 : 1);
+    volume[root] += flip * volumeOf(mesh, triangle, origin);
+  }
+  std::vector<char> reversed(model.faces.size());
+  std::vector<double> solidVolume;
+  const auto orientedByVolume = [&](int root) { return !openGroup[root] && !model.faces[root].solid; };
+  for (size_t f = 0; f < reversed.size(); ++f) {
+    const int root = groups.root(int(f));
+    const bool against = orientedByVolume(root) ? volume[root] < 0 : majority[root] < 0;
+    reversed[f] = char(groups.flipped(int(f)) != against);
+  }
+  // A cavity's shell points into the cavity, so the volume of a solid decides only as a whole.
+  for (const auto& triangle : mesh.triangles) {
+    const auto& solid = model.faces[triangle.face].solid;
+    if (!solid) continue;
+    if (*solid >= int(solidVolume.size())) solidVolume.resize(*solid + 1, 0);
+    solidVolume[*solid] += volumeOf(mesh, triangle, origin) * (reversed[triangle.face] ? -1 : 1);
+  }
+  for (size_t f = 0; f < reversed.size(); ++f)
+    if (const auto& solid = model.faces[f].solid; solid && solidVolume[*solid] < 0)
+      reversed[f] = !reversed[f];
+
+  for (auto& triangle : mesh.triangles) {
+    if (!reversed[triangle.face]) continue;
+    std::swap(triangle.vertex[1], triangle.vertex[2]);
+    std::swap(triangle.uv[1], triangle.uv[2]);
+    std::swap(triangle.side[0], triangle.side[2]);
+  }
+  return reversed;
+}
+
+std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
+                           const std::vector<char>& reversed, double angle) {
+  std::vector<double> sharp(model.edges.size(), 0), smooth(model.edges.size(), 0);
+  std::vector<char> cut(model.edges.size(), 0), present(model.edges.size(), 0);
+  for (size_t s = 0; s < uses.size(); ++s) {
+    const auto& side = mesh.sides[s];
+    if (!side.cadEdge || uses[s].empty()) continue;
+    present[*side.cadEdge] = 1;
+    if (uses[s].size() == 1) {
+      cut[*side.cadEdge] = 1;
+      continue;
+    }
+    if (std::isinf(angle)) continue;
+    const double length = (mesh.vertices[side.to].point - mesh.vertices[side.from].point).norm();
+    for (const double fraction : kSamples) {
+      std::array<Vector3d, 2> normal;
+      for (int i = 0; i < 2; ++i) {
+        const auto& [t, k] = uses[s][i];
+        normal[i] = normalOnSide(model, mesh.triangles[t], k, fraction, runsForward(mesh, uses[s][i]));
+        if (reversed[mesh.triangles[t].face]) normal[i] = -normal[i];
+      }
+      if (normal[0].isZero() || normal[1].isZero()) continue;
+      const double turn = std::atan2(normal[0].cross(normal[1]).norm(), normal[0].dot(normal[1]));
+      (turn > angle ? sharp : smooth)[*side.cadEdge] += length;
+    }
+  }
+  for (size_t e = 0; e < cut.size(); ++e)
+    if (sharp[e] > smooth[e]) cut[e] = 1;
+
+  // Chains of sharp edges that end inside a region separate nothing there.
+  std::vector<int> degree(mesh.vertices.size(), 0);
+  const auto endsOf = [&](size_t e) { return std::array<int, 2>{model.edges[e].start, model.edges[e].end}; };
+  std::vector<char> isFree(model.edges.size(), 0);
+  for (size_t s = 0; s < uses.size(); ++s)
+    if (mesh.sides[s].cadEdge && uses[s].size() == 1) isFree[*mesh.sides[s].cadEdge] = 1;
+  for (size_t e = 0; e < cut.size(); ++e)
+    if (cut[e])
+      for (const int v : endsOf(e)) ++degree[v];
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t e = 0; e < cut.size(); ++e) {
+      if (!cut[e] || isFree[e]) continue;
+      const auto [a, b] = endsOf(e);
+      if (degree[a] != 1 && degree[b] != 1) continue;
+      cut[e] = 0;
+      --degree[a], --degree[b];
+      changed = true;
+    }
+  }
+  return cut;
+}
+
+}  // namespace trimquad
