@@ -82,26 +82,36 @@ Transport transport(const SurfaceMesh& mesh) {
   std::queue<VertexHandle> leaves;
   for (const auto v : mesh.vertices())
     if (!mesh.is_boundary(v) && unsettled[v.idx()] == 1) leaves.push(v);
-  while (!leaves.empty()) {
+  const auto settle = [&](HalfedgeHandle h) {
+    settled[mesh.edge_handle(h).idx()] = 1;
+    for (const auto w : {mesh.from_vertex_handle(h), mesh.to_vertex_handle(h)})
+      if (--unsettled[w.idx()] == 1 && !mesh.is_boundary(w)) leaves.push(w);
+  };
+  // A chain of edges between two boundary loops has no leaf: the turn of the field around the loops is open there,
+  // so any one of its edges may keep its principal value.
+  auto open = mesh.edges_begin();
+  for (;;) {
+    if (leaves.empty()) {
+      while (open != mesh.edges_end() && settled[open->idx()]) ++open;
+      if (open == mesh.edges_end()) break;
+      settle(mesh.halfedge_handle(*open, 0));
+      continue;
+    }
     const auto v = leaves.front();
     leaves.pop();
     if (unsettled[v.idx()] != 1) continue;
     // Counter-clockwise around v, faces change across the incoming halfedge of each face; the sum must be K.
     double sum = 0;
-    HalfedgeHandle open;
+    HalfedgeHandle last;
     for (const auto out : mesh.voh_range(v)) {
-      const auto in =
-          mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
+      const auto in = mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
       sum += result.angle[in.idx()];
-      if (!settled[mesh.edge_handle(in).idx()]) open = in;
+      if (!settled[mesh.edge_handle(in).idx()]) last = in;
     }
     const double turns = std::round((gaussCurvature(mesh, v) - sum) / kFullTurn);
-    result.angle[open.idx()] += turns * kFullTurn;
-    const auto opposite = mesh.opposite_halfedge_handle(open);
-    result.angle[opposite.idx()] = -result.angle[open.idx()];
-    settled[mesh.edge_handle(open).idx()] = 1;
-    for (const auto w : {mesh.from_vertex_handle(open), mesh.to_vertex_handle(open)})
-      if (--unsettled[w.idx()] == 1 && !mesh.is_boundary(w)) leaves.push(w);
+    result.angle[last.idx()] += turns * kFullTurn;
+    result.angle[mesh.opposite_halfedge_handle(last).idx()] = -result.angle[last.idx()];
+    settle(last);
   }
   for (const auto v : mesh.vertices()) {
     if (mesh.is_boundary(v)) continue;
