@@ -28,15 +28,16 @@ struct SplineEdge {
   double tolerance;  ///< largest distance to the surfaces' curves, measured, at least 1e-7
 };
 
-/// The use of an edge by a face: its curve in the face's parameter plane, with the edge's own parameter, same range.
+/// The use of an edge by a face: its curve in the face's parameter plane, with the edge's own parameter, same
+/// range.
 struct SplineCoedge {
   SplineEdgeId edge;
   bool forward;  ///< whether the loop runs along the edge's direction
   PlaneCurve curve;
 };
 
-/// A trimmed surface. The outer loop comes first and runs counter-clockwise in the parameter plane, the others
-/// clockwise. A seam edge of a closed surface occurs twice in the loop, once in each direction.
+/// A trimmed surface. The outer loop comes first and runs counter-clockwise in the parameter plane, the
+/// others clockwise. A seam edge of a closed surface occurs twice in the loop, once in each direction.
 struct SplineFace {
   SplineSurface surface;
   std::vector<std::vector<SplineCoedge>> loops;
@@ -53,6 +54,9 @@ struct SplineModel {
     std::optional<int> solid;  ///< which solid the (closed) shell bounds
   };
   std::vector<Shell> shells;
+  /// Edges between surfaces that are nearly tangent: on the first face's surface, the second one's only
+  /// within the edge's tolerance.
+  int looseEdges = 0;
 };
 
 }  // namespace trimquad

@@ -1,0 +1,84 @@
+#include "trimquad/spline/corner_point.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "trimquad/base/error.h"
+
+namespace trimquad {
+namespace {
+
+constexpr double kSmallestVolume = 0.0025;  ///< of the parallelepiped of the unit normals
+constexpr int kMaxSteps = 30;
+
+Eigen::Vector3d normal(const SplineSurface::Jet& jet) {
+  return jet.su.cross(jet.sv).normalized();
+}
+
+/// S0 = S1 (= S2), by Newton; two sheets are cut with the plane through `p` across their intersection.
+std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p,
+                                                        const std::vector<const Sheet*>& sheets,
+                                                        std::vector<Eigen::Vector2d> at, double reach) {
+  const int count = int(sheets.size()), size = 2 * count;
+  std::vector<SplineSurface::Jet> jets(count);
+  const auto evaluate = [&] {
+    for (int i = 0; i < count; ++i) jets[i] = sheets[i]->jet(at[i]);
+  };
+  evaluate();
+  const Eigen::Vector3d along = normal(jets[0]).cross(normal(jets[1]));
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const Eigen::Vector3d n2 = count == 3 ? normal(jets[2]) : along;
+    if (std::abs(normal(jets[0]).cross(normal(jets[1])).dot(n2)) < kSmallestVolume) return {};
+    Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(size);
+    for (int i = 1; i < count; ++i) {
+      m.block<3, 1>(3 * i - 3, 0) = jets[0].su;
+      m.block<3, 1>(3 * i - 3, 1) = jets[0].sv;
+      m.block<3, 1>(3 * i - 3, 2 * i) = -jets[i].su;
+      m.block<3, 1>(3 * i - 3, 2 * i + 1) = -jets[i].sv;
+      f.segment<3>(3 * i - 3) = jets[0].s - jets[i].s;
+    }
+    if (count == 2) {
+      m(3, 0) = along.dot(jets[0].su);
+      m(3, 1) = along.dot(jets[0].sv);
+      f[3] = along.dot(jets[0].s - p);
+    }
+    const Eigen::VectorXd move = m.partialPivLu().solve(-f);
+    if (!move.allFinite()) return {};
+    for (int i = 0; i < count; ++i) {
+      at[i] += move.segment<2>(2 * i);
+      if (!sheets[i]->holds(at[i])) return {};
+    }
+    evaluate();
+    if (move.cwiseAbs().maxCoeff() < 1e-13) break;
+  }
+  for (int i = 0; i < count; ++i)
+    if ((jets[i].s - jets[0].s).norm() > 1e-12 * std::max(1.0, p.norm()) || (jets[i].s - p).norm() > reach)
+      return {};
+  return at;
+}
+
+}  // namespace
+
+CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
+                        const std::vector<Eigen::Vector2d>& guess, double reach) {
+  TRIMQUAD_ASSERT(!sheets.empty() && sheets.size() == guess.size());
+  CornerPoint corner{Eigen::Vector3d::Zero(), guess};
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    corner.at[i] = sheets[i]->footPoint(p, guess[i]);
+    corner.point += sheets[i]->jet(corner.at[i]).s / double(sheets.size());
+  }
+  if (sheets.size() == 1) return corner;
+  if (sheets.size() <= 3)
+    if (auto common = commonPoint(p, sheets, corner.at, reach)) {
+      corner.at = std::move(*common);
+      corner.point = sheets[0]->jet(corner.at[0]).s;
+      return corner;
+    }
+  for (std::size_t i = 0; i < sheets.size(); ++i)
+    corner.at[i] = sheets[i]->footPoint(corner.point, corner.at[i]);
+  return corner;
+}
+
+}  // namespace trimquad

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "trimquad/spline/sheet.h"
+
+namespace trimquad {
+
+/// A vertex of the trimmed model with its place on each sheet that meets there.
+struct CornerPoint {
+  Eigen::Vector3d point;
+  std::vector<Eigen::Vector2d> at;  ///< by sheet
+};
+
+/// Where the sheets around a corner `p` of the model meet: the foot point of one sheet, the nearest point of
+/// the intersection curve of two, the common point of three (Newton). More than three, sheets that are nearly
+/// tangent or that meet nowhere within `reach` have no common point: then the mean of the foot points of `p`,
+/// and its own foot points. \param guess parameters near p, by sheet
+CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
+                        const std::vector<Eigen::Vector2d>& guess, double reach);
+
+}  // namespace trimquad

@@ -1,0 +1,308 @@
+#include "trimquad/spline/trim_curve.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "trimquad/base/error.h"
+#include "trimquad/spline/fit_curve.h"
+
+namespace trimquad {
+namespace {
+
+constexpr int kGapSamples = 1000;
+
+Eigen::Matrix<double, 3, 2> metric(const Sheet& sheet, const Eigen::Vector2d& x) {
+  const auto jet = sheet.jet(x);
+  Eigen::Matrix<double, 3, 2> m;
+  m << jet.su, jet.sv;
+  return m;
+}
+
+/// Parameters in (a, b) where x(s) crosses the sheet's seam.
+void appendSeamCrossings(const Sheet& sheet, const std::function<Eigen::Vector2d(double)>& x, double a,
+                         double b, std::vector<double>& found) {
+  if (!sheet.period) return;
+  constexpr int steps = 512;
+  double low = x(a)[0], high = low;
+  for (int i = 1; i <= steps; ++i) {
+    const double u = x(a + (b - a) * i / steps)[0];
+    low = std::min(low, u);
+    high = std::max(high, u);
+  }
+  const double first = sheet.surface.firstU();
+  for (double turn = std::ceil((low - first) / *sheet.period); first + turn * *sheet.period <= high; ++turn) {
+    const auto one =
+        crossings([&](double s) { return x(s)[0]; }, first + turn * *sheet.period, 0, a, b, steps);
+    found.insert(found.end(), one.begin(), one.end());
+  }
+}
+
+/// Cuts of [a, b] into edges: at the given crossings, and once in the middle where a closed curve has no
+/// other.
+std::vector<double> edgeEnds(double a, double b, std::vector<double> cuts, bool closed) {
+  std::sort(cuts.begin(), cuts.end());
+  if (cuts.empty() && closed) cuts.push_back((a + b) / 2);
+  cuts.insert(cuts.begin(), a);
+  cuts.push_back(b);
+  return cuts;
+}
+
+/// Puts the curve's end exactly onto the seam that it was cut at.
+void snapToSeam(const Sheet& sheet, Eigen::Vector2d& end) {
+  if (!sheet.period) return;
+  const double first = sheet.surface.firstU();
+  const double seam = first + *sheet.period * std::round((end[0] - first) / *sheet.period);
+  constexpr double rounding = 1e-9;
+  if (std::abs(end[0] - seam) < rounding) end[0] = seam;
+}
+
+double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheets) {
+  double gap = 0;
+  const double a = piece.curve.first(), b = piece.curve.last();
+  for (int i = 0; i <= kGapSamples; ++i) {
+    const double s = i == kGapSamples ? b : a + (b - a) * i / kGapSamples;
+    const Eigen::Vector3d p = piece.curve.point(s);
+    for (std::size_t k = 0; k < sheets.size(); ++k)
+      gap = std::max(gap, (sheets[k]->jet(piece.onSheet[k].point(s)).s - p).norm());
+  }
+  return gap;
+}
+
+/// S(x(s)) as a curve in space.
+SpaceCurve composed(const Sheet& sheet, const PlaneCurve& x, const Progress& progress) {
+  const auto onSurface = [&](double s) {
+    const auto d = x.derivatives(s, 2);
+    const auto jet = sheet.jet(d[0]);
+    CurveJet<3> c;
+    c.value = jet.s;
+    c.first = jet.su * d[1][0] + jet.sv * d[1][1];
+    c.second = jet.suu * (d[1][0] * d[1][0]) + jet.suv * (2 * d[1][0] * d[1][1]) +
+               jet.svv * (d[1][1] * d[1][1]) + jet.su * d[2][0] + jet.sv * d[2][1];
+    return c;
+  };
+  const auto deviation = [&](double s, const Eigen::Vector3d& p) {
+    return (sheet.jet(x.point(s)).s - p).norm();
+  };
+  auto breaks = knotCrossings(
+      sheet, [&](double s) { return x.point(s); }, x.first(), x.last());
+  breaks.insert(breaks.end(), x.knots.begin() + x.degree + 1, x.knots.end() - x.degree - 1);
+  return hermiteChain<3>(onSurface, mergedBreaks(std::move(breaks), x.first(), x.last()),
+                         std::max(1, sheet.continuity()), deviation, kComposedError, progress);
+}
+
+/// The smooth curve on the sheet that follows the sampled curve, from the side's start to its end.
+PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSide& side, double tolerance,
+                      const Progress& progress) {
+  std::vector<CurveSample<2>> samples;
+  for (std::size_t i = 0; i < sampled.s.size(); ++i) {
+    const Eigen::Vector2d& x = sampled.foot[sideIndex][i];
+    samples.push_back({sampled.s[i], sampled.t[i], x, metric(*side.sheet, x)});
+  }
+  samples.front().point = side.start;
+  samples.back().point = side.end;
+  const auto between = [&](const CurveSample<2>& p, const CurveSample<2>& q) {
+    const double t = (p.t + q.t) / 2;
+    const Eigen::Vector2d x = side.sheet->footPoint(sampled.curve->curve->point(t), (p.point + q.point) / 2);
+    return CurveSample<2>{(p.s + q.s) / 2, t, x, metric(*side.sheet, x)};
+  };
+  try {
+    return fitCurve<2>(samples, 3, tolerance, SampleParameters::Sliding, between, progress);
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::Stage) throw;
+    throw stageError(error.stage(), error.message(), side.region + ", " + sampled.curve->name,
+                     sampled.point[sampled.point.size() / 2]);
+  }
+}
+
+}  // namespace
+
+SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& sides, double reach) {
+  SampledCurve sampled{&curve, {}, {}, {}, {}};
+  const auto& stations = sides.front().run->t;
+  const int pieces = int(stations.size()) - 1, perPiece = std::max(4, (256 + pieces - 1) / pieces);
+  for (int i = 0; i < pieces; ++i)
+    for (int k = 0; k < perPiece; ++k)
+      sampled.t.push_back(stations[i] + (stations[i + 1] - stations[i]) * k / perPiece);
+  sampled.t.push_back(stations.back());
+  for (const double t : sampled.t) {
+    const Eigen::Vector3d p = curve.curve->point(t);
+    const double s = sampled.s.empty() ? 0 : sampled.s.back() + (p - sampled.point.back()).norm();
+    // Two samples in one place would have one parameter: the later one says nothing new.
+    if (!sampled.s.empty() && !(s > sampled.s.back())) {
+      sampled.s.push_back(std::nextafter(sampled.s.back(), HUGE_VAL));
+    } else {
+      sampled.s.push_back(s);
+    }
+    sampled.point.push_back(p);
+  }
+  for (const auto& side : sides) {
+    auto& feet = sampled.foot.emplace_back();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < sampled.t.size(); ++i) {
+      const auto& run = *side.run;
+      while (at + 2 < run.t.size() && run.t[at + 1] < sampled.t[i]) ++at;
+      const double x = std::clamp((sampled.t[i] - run.t[at]) / (run.t[at + 1] - run.t[at]), 0.0, 1.0);
+      const Eigen::Vector2d guess = (1 - x) * run.uv[at] + x * run.uv[at + 1];
+      feet.push_back(side.sheet->footPoint(sampled.point[i], guess));
+      const double distance = (side.sheet->jet(feet.back()).s - sampled.point[i]).norm();
+      if (distance > reach)
+        throw stageError("fit",
+                         "the fitted surface misses the boundary; use a smaller tolerance or edge length",
+                         side.region + ", " + curve.name, sampled.point[i]);
+    }
+  }
+  return sampled;
+}
+
+std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side, double tolerance,
+                                const Progress& progress) {
+  // The side is the only one that this edge is for, whichever place it has among the curve's sides.
+  const PlaneCurve whole = planeCurve(sampled, 0, side, tolerance, progress);
+  std::vector<double> cuts;
+  appendSeamCrossings(
+      *side.sheet, [&](double s) { return whole.point(s); }, whole.first(), whole.last(), cuts);
+  const auto ends =
+      edgeEnds(whole.first(), whole.last(), std::move(cuts), sampled.curve->start == sampled.curve->end);
+  std::vector<TrimPiece> pieces;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    PlaneCurve x = restricted(whole, ends[i], ends[i + 1]);
+    snapToSeam(*side.sheet, x.poles.front());
+    snapToSeam(*side.sheet, x.poles.back());
+    TrimPiece piece{composed(*side.sheet, x, progress), {x}, 0};
+    piece.gap = largestGap(piece, {side.sheet});
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
+                                                   const std::vector<SheetSide>& sides, double tolerance,
+                                                   double reach, const Progress& progress) {
+  std::vector<CurveSample<3>> samples;
+  for (std::size_t i = 0; i < sampled.s.size(); ++i)
+    samples.push_back({sampled.s[i], sampled.t[i], sampled.point[i], Eigen::Matrix3d::Identity()});
+  const auto between = [&](const CurveSample<3>& p, const CurveSample<3>& q) {
+    const double t = (p.t + q.t) / 2;
+    return CurveSample<3>{(p.s + q.s) / 2, t, sampled.curve->curve->point(t), Eigen::Matrix3d::Identity()};
+  };
+  auto reference = fitCurve<3>(samples, 5, tolerance, SampleParameters::Sliding, between, progress);
+  std::vector<IntersectionCurve::Guess> guesses;
+  for (std::size_t i = 0; i < sampled.s.size(); ++i) {
+    IntersectionCurve::Guess guess{sampled.s[i], {}};
+    guess.at << sampled.foot[0][i], sampled.foot[1][i];
+    guesses.push_back(guess);
+  }
+  IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), std::move(guesses),
+                                 reach);
+  // The ends themselves may lie beyond the surfaces' common point; the corners settle those.
+  constexpr int tests = 64;
+  for (int i = 0; i < tests; ++i) {
+    progress.check();
+    if (!intersection.parameters(sampled.s.back() * (i + 0.5) / tests)) return {};
+  }
+  return intersection;
+}
+
+std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& intersection, bool closed,
+                                                 const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                                                 const Progress& progress) {
+  const Sheet &sheetA = intersection.a(), &sheetB = intersection.b();
+  const auto& reference = intersection.reference();
+  const double a = intersection.parameterOf(start, reference.first());
+  const double b = intersection.parameterOf(end, reference.last());
+  if (!(a < b)) return {};
+  const auto solved = [&](double s) {
+    const auto z = intersection.parameters(s);
+    if (!z) throw IntersectionCurve::Missing{};
+    return *z;
+  };
+  const auto onA = [&](double s) -> Eigen::Vector2d { return solved(s).head<2>(); };
+  const auto onB = [&](double s) -> Eigen::Vector2d { return solved(s).tail<2>(); };
+  const auto deviation = [&](double, const Eigen::Matrix<double, 7, 1>& x) {
+    return std::max((sheetA.jet(x.head<2>()).s - x.tail<3>()).norm(),
+                    (sheetB.jet(x.segment<2>(2)).s - x.tail<3>()).norm());
+  };
+  std::vector<TrimPiece> pieces;
+  try {
+    std::vector<double> cuts;
+    appendSeamCrossings(sheetA, onA, a, b, cuts);
+    appendSeamCrossings(sheetB, onB, a, b, cuts);
+    auto breaks = knotCrossings(sheetA, onA, a, b);
+    const auto breaksB = knotCrossings(sheetB, onB, a, b);
+    breaks.insert(breaks.end(), breaksB.begin(), breaksB.end());
+    breaks.insert(breaks.end(), reference.knots.begin(), reference.knots.end());
+    const int continuity = std::max(1, std::min(sheetA.continuity(), sheetB.continuity()));
+    const auto ends = edgeEnds(a, b, std::move(cuts), closed);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const auto chain = hermiteChain<7>([&](double s) { return intersection.jet(s); },
+                                         mergedBreaks(breaks, ends[i], ends[i + 1]), continuity, deviation,
+                                         kComposedError, progress);
+      TrimPiece piece;
+      piece.curve = {chain.degree, chain.knots, {}};
+      piece.onSheet.assign(2, {chain.degree, chain.knots, {}});
+      for (const auto& pole : chain.poles) {
+        piece.onSheet[0].poles.push_back(pole.head<2>());
+        piece.onSheet[1].poles.push_back(pole.segment<2>(2));
+        piece.curve.poles.push_back(pole.tail<3>());
+      }
+      for (int k : {0, 1})
+        for (auto* tip : {&piece.onSheet[k].poles.front(), &piece.onSheet[k].poles.back()})
+          snapToSeam(k == 0 ? sheetA : sheetB, *tip);
+      piece.gap = largestGap(piece, {&sheetA, &sheetB});
+      pieces.push_back(std::move(piece));
+    }
+  } catch (const IntersectionCurve::Missing&) {
+    return {};
+  }
+  return pieces;
+}
+
+std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<SheetSide>& sides,
+                                 double tolerance, const Progress& progress) {
+  const Sheet &sheetA = *sides[0].sheet, &sheetB = *sides[1].sheet;
+  const PlaneCurve wholeA = planeCurve(sampled, 0, sides[0], tolerance, progress);
+  const auto guessB = [&](double s) {
+    const auto next = std::clamp(std::lower_bound(sampled.s.begin(), sampled.s.end(), s),
+                                 sampled.s.begin() + 1, sampled.s.end() - 1);
+    const std::size_t i = next - sampled.s.begin();
+    const double x = std::clamp((s - sampled.s[i - 1]) / (sampled.s[i] - sampled.s[i - 1]), 0.0, 1.0);
+    return Eigen::Vector2d((1 - x) * sampled.foot[1][i - 1] + x * sampled.foot[1][i]);
+  };
+  const auto sampleB = [&](double s) {
+    const Eigen::Vector2d x = sheetB.footPoint(sheetA.jet(wholeA.point(s)).s, guessB(s));
+    return CurveSample<2>{s, s, x, metric(sheetB, x)};
+  };
+  std::vector<CurveSample<2>> samples;
+  for (const double s : sampled.s) samples.push_back(sampleB(s));
+  samples.front().point = sides[1].start;
+  samples.back().point = sides[1].end;
+  const auto between = [&](const CurveSample<2>& p, const CurveSample<2>& q) {
+    return sampleB((p.s + q.s) / 2);
+  };
+  // The end points are the corners', which may lie off the feet by as much as the sheets are apart.
+  const double offset =
+      std::max((samples.front().metric * (samples.front().point - sampleB(samples.front().s).point)).norm(),
+               (samples.back().metric * (samples.back().point - sampleB(samples.back().s).point)).norm());
+  const PlaneCurve wholeB = fitCurve<2>(samples, 3, std::max(tolerance / 20, 1.1 * offset),
+                                        SampleParameters::Fixed, between, progress);
+  std::vector<double> cuts;
+  appendSeamCrossings(
+      sheetA, [&](double s) { return wholeA.point(s); }, wholeA.first(), wholeA.last(), cuts);
+  appendSeamCrossings(
+      sheetB, [&](double s) { return wholeB.point(s); }, wholeB.first(), wholeB.last(), cuts);
+  const auto ends =
+      edgeEnds(wholeA.first(), wholeA.last(), std::move(cuts), sampled.curve->start == sampled.curve->end);
+  std::vector<TrimPiece> pieces;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    PlaneCurve xa = restricted(wholeA, ends[i], ends[i + 1]), xb = restricted(wholeB, ends[i], ends[i + 1]);
+    for (auto* end : {&xa.poles.front(), &xa.poles.back()}) snapToSeam(sheetA, *end);
+    for (auto* end : {&xb.poles.front(), &xb.poles.back()}) snapToSeam(sheetB, *end);
+    TrimPiece piece{composed(sheetA, xa, progress), {xa, xb}, 0};
+    piece.gap = largestGap(piece, {&sheetA, &sheetB});
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+}  // namespace trimquad

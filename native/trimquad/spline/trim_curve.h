@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "trimquad/base/progress.h"
+#include "trimquad/mesh/region.h"
+#include "trimquad/spline/boundary_runs.h"
+#include "trimquad/spline/intersection_curve.h"
+#include "trimquad/spline/sheet.h"
+
+namespace trimquad {
+
+/// Largest distance, model units, that an edge's curve is given from its image on a surface: so little that
+/// OpenCASCADE and STEP keep the tolerance 1e-7.
+inline constexpr double kComposedError = 2e-8;
+
+/// One sheet that ends on a model curve.
+struct SheetSide {
+  const Sheet* sheet;
+  const BoundaryRun* run;
+  std::string region;          ///< its name, for errors
+  Eigen::Vector2d start, end;  ///< places of the vertices at the curve's ends, unwrapped; set by the caller
+};
+
+/// A model curve, sampled, with the feet of the samples on the sheets that end there.
+struct SampledCurve {
+  const ModelCurve* curve;
+  std::vector<double> t, s;  ///< the curve's own parameter; chord length from the start
+  std::vector<Eigen::Vector3d> point;
+  std::vector<std::vector<Eigen::Vector2d>> foot;  ///< by side, by sample
+};
+
+/// Samples between all neighbouring boundary vertices. Throws Error(Stage, "fit") where a sheet is further
+/// away than `reach`.
+SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& sides, double reach);
+
+/// An edge to be: its curve in space and on each side's sheet, all with the same parameter.
+struct TrimPiece {
+  SpaceCurve curve;
+  std::vector<PlaneCurve> onSheet;  ///< by side, unwrapped
+  double gap;                       ///< largest distance between the curve and its images on the sheets
+};
+
+/// Pieces of the edge of one sheet, in order: they follow the model curve within `tolerance` as seen on the
+/// sheet, start and end in `side.start` and `side.end`, and are cut wherever they cross the sheet's seam.
+std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side, double tolerance,
+                                const Progress& progress);
+
+/// The curve in which two sheets cut each other along a model curve; null where they are too nearly tangent.
+std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
+                                                   const std::vector<SheetSide>& sides, double tolerance,
+                                                   double reach, const Progress& progress);
+
+/// Pieces of the intersection curve between the points nearest to `start` and `end`, cut at both sheets'
+/// seams. Null where it has a gap after all.
+std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& intersection, bool closed,
+                                                 const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                                                 const Progress& progress);
+
+/// Pieces of an edge on the first side's sheet, which the second sheet only touches within the gap: for
+/// sheets that are nearly tangent.
+std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<SheetSide>& sides,
+                                 double tolerance, const Progress& progress);
+
+}  // namespace trimquad

@@ -1,0 +1,132 @@
+#include "trimquad/spline/trim_model.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "support/trim_samples.h"
+#include "trimquad/spline/trim_loops.h"
+
+namespace trimquad {
+namespace {
+
+using namespace test;
+
+/// What holds for every trimmed model whose surfaces are not tangent to each other.
+void expectExact(const SplineModel& model) {
+  const auto gaps = measuredGaps(model);
+  EXPECT_LE(gaps.edge, 5e-8);
+  EXPECT_LE(gaps.vertex, 1e-7);
+  EXPECT_LE(gaps.edgeTolerance, 1e-7);
+  EXPECT_LE(gaps.vertexTolerance, 1e-7);
+  EXPECT_EQ(model.looseEdges, 0);
+  for (const auto& face : model.faces) EXPECT_FALSE(loopCrossing(face));
+  for (const auto& edge : model.edges) {
+    EXPECT_NE(edge.start, edge.end);
+    for (std::size_t i = edge.curve.degree + 1; i + edge.curve.degree + 1 < edge.curve.knots.size(); ++i)
+      EXPECT_GT(edge.curve.knots[i + edge.curve.degree - 2], edge.curve.knots[i]) << "not C2";
+  }
+}
+
+std::size_t coedges(const SplineModel& model) {
+  std::size_t count = 0;
+  for (const auto& face : model.faces)
+    for (const auto& loop : face.loops) count += loop.size();
+  return count;
+}
+
+TEST(TrimModel, rectangleHasFourExactEdges) {
+  const auto model = rectangleSheet().trim();
+  expectExact(model);
+  EXPECT_EQ(model.faces.size(), 1u);
+  EXPECT_EQ(model.edges.size(), 4u);
+  EXPECT_EQ(model.vertices.size(), 4u);
+}
+
+TEST(TrimModel, roundSheetHasItsHoles) {
+  const auto model = roundSheet().trim();
+  expectExact(model);
+  ASSERT_EQ(model.faces.size(), 1u);
+  EXPECT_EQ(model.faces[0].loops.size(), 4u);
+  EXPECT_EQ(model.edges.size(), 8u);
+  for (const auto& edge : model.edges) EXPECT_LT(edge.curve.poles.size(), 400u);
+}
+
+TEST(TrimModel, tubeIsCutOnceAlongItsSeam) {
+  const auto model = tube({}).trim();
+  expectExact(model);
+  ASSERT_EQ(model.faces.size(), 1u);
+  EXPECT_EQ(model.faces[0].loops.size(), 1u);
+  EXPECT_EQ(model.edges.size(), 5u);
+  EXPECT_EQ(coedges(model), 6u);
+}
+
+TEST(TrimModel, seamKeepsClearOfHoles) {
+  const auto model = tube({{0.3, 5}, {9, 4}}).trim();
+  expectExact(model);
+  ASSERT_EQ(model.faces.size(), 1u);
+  EXPECT_EQ(model.faces[0].loops.size(), 3u);
+  EXPECT_EQ(model.edges.size(), 9u);
+}
+
+TEST(TrimModel, seamThatNothingAvoidsIsCutAtTheHoles) {
+  std::vector<Eigen::Vector2d> ring;
+  for (int i = 0; i < 12; ++i) ring.emplace_back(2 * i + 0.4, i % 2 ? 3.5 : 6);
+  const auto model = tube(ring, 1.3).trim();
+  expectExact(model);
+  ASSERT_EQ(model.faces.size(), 1u);
+  std::map<int, int> uses;
+  for (const auto& loop : model.faces[0].loops)
+    for (const auto& coedge : loop) ++uses[coedge.edge.index];
+  int seams = 0;
+  for (const auto& [edge, count] : uses) seams += count == 2;
+  EXPECT_GE(seams, 2);
+  EXPECT_EQ(uses.size(), model.edges.size());
+}
+
+TEST(TrimModel, boxOfPlanesIsClosed) {
+  const auto model = bulgedBox(0).trim();
+  expectExact(model);
+  EXPECT_EQ(model.faces.size(), 6u);
+  EXPECT_EQ(model.edges.size(), 12u);
+  EXPECT_EQ(model.vertices.size(), 8u);
+  EXPECT_EQ(coedges(model), 24u);
+  ASSERT_EQ(model.shells.size(), 1u);
+  EXPECT_EQ(model.shells[0].solid, 0);
+}
+
+TEST(TrimModel, curvedSheetsMeetInTheirIntersections) {
+  const auto model = bulgedBox(0.8).trim();
+  expectExact(model);
+  EXPECT_EQ(model.edges.size(), 12u);
+  EXPECT_EQ(model.vertices.size(), 8u);
+}
+
+TEST(TrimModel, twoCurvedSheetsShareOneEdge) {
+  const auto model = bulgedBox(0.8, {1, 5}).trim();
+  expectExact(model);
+  EXPECT_EQ(model.edges.size(), 7u);
+  EXPECT_EQ(model.vertices.size(), 6u);
+  EXPECT_FALSE(model.shells[0].solid);
+}
+
+TEST(TrimModel, failedNeighbourLeavesFreeEdges) {
+  auto box = bulgedBox(0.8);
+  box.fits[2].reset();
+  const auto model = box.trim();
+  expectExact(model);
+  EXPECT_EQ(model.faces.size(), 5u);
+  EXPECT_EQ(model.edges.size(), 12u);
+  EXPECT_FALSE(model.shells[0].solid);
+}
+
+TEST(TrimModel, platesWallsAndCapsShareTheirEdges) {
+  const auto model = filletedPlate().trim();
+  expectExact(model);
+  EXPECT_EQ(model.faces.size(), 4u);
+  ASSERT_EQ(model.shells.size(), 1u);
+  EXPECT_EQ(model.shells[0].solid, 0);
+}
+
+}  // namespace
+}  // namespace trimquad
