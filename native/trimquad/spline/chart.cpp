@@ -6,7 +6,7 @@
 #include <string>
 
 #include "trimquad/base/error.h"
-#include "trimquad/spline/boundary_image.h"
+#include "trimquad/mesh/boundary_image.h"
 
 namespace trimquad {
 namespace {

@@ -1,4 +1,4 @@
-#include "trimquad/spline/boundary_image.h"
+#include "trimquad/mesh/boundary_image.h"
 
 #include <algorithm>
 #include <cmath>
