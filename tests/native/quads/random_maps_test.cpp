@@ -172,6 +172,26 @@ int interiorGridPoints(const GridMap& map) {
   return count;
 }
 
+/// Cells with holes lie flat here, so their simple polygons must tile them.
+void expectTiled(const QuadMesh& quads) {
+  for (const auto& cell : quads.cells) {
+    double area = 0;
+    for (const auto& polygon : cell.simple) {
+      double part = 0;
+      for (size_t k = 0; k < polygon.size(); ++k) {
+        const auto &p = quads.points[polygon[k].index].position,
+                   &q = quads.points[polygon[(k + 1) % polygon.size()].index].position;
+        part += 0.5 * (p.x() * q.y() - p.y() * q.x());
+      }
+      EXPECT_GE(part, -1e-4);
+      area += part;
+    }
+    if (!cell.simple.empty()) {
+      EXPECT_NEAR(area, cell.area, 1e-4);
+    }
+  }
+}
+
 void checkRandomMap(unsigned seed) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
@@ -198,6 +218,7 @@ void checkRandomMap(unsigned seed) {
   const QuadMesh quads = extractSound(map, corners);
   EXPECT_EQ(countKind(quads, QuadMesh::PointKind::Grid, false), interiorGridPoints(map));
   for (const auto& p : quads.points) EXPECT_TRUE(p.border || p.quads == 4);
+  expectTiled(quads);
 }
 
 }  // namespace
