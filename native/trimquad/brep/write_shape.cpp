@@ -1,0 +1,102 @@
+#include <APIHeaderSection_MakeHeader.hxx>
+#include <BRepTools.hxx>
+#include <Interface_Static.hxx>
+#include <STEPControl_Controller.hxx>
+#include <STEPControl_Writer.hxx>
+#include <StepBasic_Product.hxx>
+#include <StepData_Protocol.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepData_StepWriter.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "trimquad/brep/assemble.h"
+#include "trimquad/brep/occt_guard.h"
+
+namespace trimquad {
+namespace {
+
+/// Writes what `print` prints and makes sure that every byte has arrived. OpenCASCADE prints to memory: on a
+/// full disk its own streams end in a bad cast.
+void writeFile(const std::string& path, const std::function<bool(std::ostream&)>& print) {
+  std::ostringstream text;
+  if (!print(text)) throw stageError("write", "OpenCASCADE could not print the shape", path);
+  errno = 0;
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  if (file) file << text.view();
+  file.close();
+  if (!file)
+    throw inputError("write",
+                     std::string("the file cannot be written (") +
+                         (errno != 0 ? std::strerror(errno) : "incomplete") +
+                         "); check the folder, its permissions and the disk",
+                     path);
+}
+
+/// OpenCASCADE counts products in the process, and numbers their names.
+void nameProducts(const Handle(StepData_StepModel) & model) {
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto product = Handle(StepBasic_Product)::DownCast(model->Value(i));
+    if (product.IsNull()) continue;
+    product->SetId(new TCollection_HAsciiString("TrimQuad"));
+    product->SetName(new TCollection_HAsciiString("TrimQuad"));
+  }
+}
+
+/// Sets one of the translator's global settings and puts the old value back.
+class TranslatorSetting {
+ public:
+  TranslatorSetting(const char* name, const char* value) : name_(name) {
+    const char* before = Interface_Static::CVal(name);
+    before_ = before ? before : "";
+    Interface_Static::SetCVal(name, value);
+  }
+  ~TranslatorSetting() { Interface_Static::SetCVal(name_, before_.c_str()); }
+  TranslatorSetting(const TranslatorSetting&) = delete;
+  TranslatorSetting& operator=(const TranslatorSetting&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+}  // namespace
+
+void writeStep(const Shape& shape, const std::string& path) {
+  guarded(Error::Kind::Stage, "write", "the shape cannot be translated to STEP", [&] {
+    const QuietTranslators quiet;
+    STEPControl_Controller::Init();
+    const TranslatorSetting schema("write.step.schema", "AP242DIS"), unit("write.step.unit", "MM"),
+        curves("write.surfacecurve.mode", "On");
+    STEPControl_Writer writer;
+    if (writer.Transfer(shape.topology(), STEPControl_AsIs) != IFSelect_RetDone)
+      throw stageError("write", "OpenCASCADE could not translate the shape to STEP; try .brep instead");
+    const Handle(StepData_StepModel) model = writer.Model();
+    nameProducts(model);
+    APIHeaderSection_MakeHeader header(model);
+    header.SetName(new TCollection_HAsciiString("TrimQuad"));
+    header.SetTimeStamp(new TCollection_HAsciiString("2000-01-01T00:00:00"));
+    header.SetOriginatingSystem(new TCollection_HAsciiString("TrimQuad"));
+    header.Apply(model);
+    writeFile(path, [&](std::ostream& file) {
+      StepData_StepWriter text(model);
+      text.SendModel(Handle(StepData_Protocol)::DownCast(model->Protocol()));
+      return text.Print(file);
+    });
+  });
+}
+
+void writeBrep(const Shape& shape, const std::string& path) {
+  guarded(Error::Kind::Stage, "write", "the shape cannot be written", [&] {
+    writeFile(path, [&](std::ostream& file) {
+      BRepTools::Write(shape.topology(), file);
+      return file.good();
+    });
+  });
+}
+
+}  // namespace trimquad
