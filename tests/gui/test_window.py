@@ -1,0 +1,266 @@
+"""The add-on in FreeCAD's window: freecad test_window.py COUNTS_FILE. Prints a line a test, writes "PASSED FAILED"."""
+import os
+import sys
+import tempfile
+import time
+import traceback
+
+import FreeCAD
+import FreeCADGui
+import Part
+from PySide import QtCore, QtGui
+
+try:
+    from PySide import QtWidgets
+except ImportError:  # FreeCAD 0.20
+    from PySide import QtGui as QtWidgets
+
+COUNTS_FILE = sys.argv[-1]
+TESTS = []
+PANELS = []
+V = FreeCAD.Vector
+
+
+def test(function):
+    TESTS.append(function)
+    return function
+
+
+def spin(seconds):
+    """Let the window work."""
+    loop = QtCore.QEventLoop()
+    QtCore.QTimer.singleShot(int(1000 * seconds), loop.quit)
+    loop.exec_()
+
+
+def wait_until(condition, seconds=60):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        spin(0.05)
+
+
+def wavy_face(size=60.0, height=3.0):
+    steps = [size * i / 6 for i in range(7)]
+    surface = Part.BSplineSurface()
+    surface.interpolate([[V(x, y, height * ((i + j) % 3 - 1)) for j, y in enumerate(steps)] for i, x in enumerate(steps)])
+    return surface.toShape()
+
+
+def new_document(shape):
+    document = FreeCAD.newDocument()
+    document.UndoMode = 1
+    source = document.addObject("Part::Feature", "Source")
+    source.Shape = shape
+    document.recompute()
+    return document, source
+
+
+def select(source, *names):
+    FreeCADGui.Selection.clearSelection()
+    for name in names or [""]:
+        FreeCADGui.Selection.addSelection(source.Document.Name, source.Name, name)
+
+
+def record_panels():
+    """Every panel that comes up is kept in PANELS."""
+    from trimquad.gui.task_panel import ConvertPanel
+
+    original = ConvertPanel.__init__
+
+    def record(self, *arguments):
+        original(self, *arguments)
+        PANELS.append(self)
+
+    ConvertPanel.__init__ = record
+
+
+def run_command(**values):
+    """Open the panel by the command, fill it in, press OK."""
+    FreeCADGui.runCommand("TrimQuad_Convert")
+    spin(0.2)
+    shown = PANELS[-1]
+    for name, value in values.items():
+        getattr(shown, name).setValue(value)
+    shown.accept()
+    return shown
+
+
+def convert(document, source, *faces, **values):
+    select(source, *faces)
+    run_command(**values)
+    wait_until(lambda: not FreeCADGui.Control.activeDialog())
+    return document.SplineShell, document.QuadMesh
+
+
+@test
+def the_workbench_has_its_command_in_menu_and_toolbar():
+    FreeCADGui.activateWorkbench("TrimQuadWorkbench")
+    spin(0.3)
+    assert FreeCADGui.activeWorkbench().MenuText == "TrimQuad"
+    assert "TrimQuad_Convert" in FreeCADGui.listCommands()
+    window = FreeCADGui.getMainWindow()
+    assert any(bar.windowTitle() == "TrimQuad" and bar.actions() for bar in window.findChildren(QtWidgets.QToolBar))
+    assert any(action.text().replace("&", "") == "TrimQuad" for action in window.menuBar().actions())
+
+
+@test
+def the_command_converts_the_selected_face_and_leaves_the_view_usable():
+    document, source = new_document(Part.makeBox(40, 30, 20))
+    ticks = []
+    timer = QtCore.QTimer()
+    timer.timeout.connect(lambda: ticks.append(1))
+    timer.start(10)
+    shell, quads = convert(document, source, "Face6", count=60)
+    timer.stop()
+    assert abs(shell.Shape.Area - 1200) < 1
+    assert 30 < quads.FullQuads + quads.TrimmedCells < 120
+    assert len(ticks) > 2
+    assert not source.ViewObject.Visibility
+    assert shell.ViewObject.Proxy.claimChildren() == [quads]
+    assert quads.ViewObject.Proxy.lines.coordIndex.getNum() > 100
+
+
+@test
+def recomputing_follows_the_source():
+    document, source = new_document(wavy_face())
+    shell, quads = convert(document, source, count=80)
+    area = shell.Shape.Area
+    bigger = source.Shape.copy()
+    bigger.scale(2)
+    source.Shape = bigger
+    document.recompute()
+    assert abs(shell.Shape.Area / area - 4) < 0.05
+    assert abs(quads.Mesh.Area / area - 4) < 0.1
+
+
+@test
+def undo_is_one_step_and_redo_draws_the_quads_again():
+    document, source = new_document(wavy_face())
+    convert(document, source, count=80)
+    document.undo()
+    assert [o.Name for o in document.Objects] == ["Source"]
+    document.redo()
+    spin(0.2)
+    assert document.QuadMesh.ViewObject.Proxy.lines.coordIndex.getNum() > 100
+
+
+@test
+def saved_and_reopened_the_quads_are_drawn_and_the_options_can_be_edited():
+    document, source = new_document(wavy_face())
+    convert(document, source, count=80)
+    path = os.path.join(tempfile.mkdtemp(), "part.FCStd")
+    document.saveAs(path)
+    FreeCAD.closeDocument(document.Name)
+    document = FreeCAD.openDocument(path)
+    spin(0.3)
+    shell, quads = document.SplineShell, document.QuadMesh
+    before = quads.FullQuads
+    assert quads.ViewObject.Proxy.lines.coordIndex.getNum() > 100
+    assert shell.ViewObject.Proxy.claimChildren() == [quads]
+    FreeCADGui.ActiveDocument.setEdit(shell.Name)
+    spin(0.2)
+    shown = PANELS[-1]
+    assert shown.shell is shell and shown.count.value() == 80
+    shown.count.setValue(320)
+    shown.accept()
+    wait_until(lambda: not FreeCADGui.Control.activeDialog())
+    assert quads.FullQuads > 2 * before
+    document.undo()
+    assert quads.FullQuads == before
+
+
+@test
+def cancel_stops_a_long_conversion_and_changes_nothing():
+    document, source = new_document(wavy_face(600.0, 20.0))
+    select(source)
+    shown = run_command(count=60000)
+    spin(0.4)
+    assert shown.thread is not None
+    started = time.monotonic()
+    shown.reject()
+    wait_until(lambda: shown.thread is None, 20)
+    assert time.monotonic() - started < 5
+    assert shown.message.text() == "cancelled"
+    assert [o.Name for o in document.Objects] == ["Source"]
+    shown.reject()
+    wait_until(lambda: not FreeCADGui.Control.activeDialog())
+
+
+@test
+def an_unusable_option_is_said_in_the_panel():
+    document, source = new_document(wavy_face())
+    select(source)
+    FreeCADGui.runCommand("TrimQuad_Convert")
+    spin(0.2)
+    shown = PANELS[-1]
+    shown.by_length.setChecked(True)
+    shown.length.setValue(1e5)
+    shown.accept()
+    wait_until(lambda: shown.thread is None)
+    assert "larger than the part" in shown.message.text()
+    assert [o.Name for o in document.Objects] == ["Source"]
+    shown.reject()
+
+
+@test
+def the_view_shows_faces_and_quad_edges():
+    document, source = new_document(wavy_face())
+    convert(document, source, count=80)
+    FreeCADGui.Selection.clearSelection()
+    view = FreeCADGui.ActiveDocument.ActiveView
+    view.viewIsometric()
+    view.fitAll()
+    spin(0.5)
+    path = os.path.join(os.path.dirname(COUNTS_FILE), "window.png")
+    view.saveImage(path, 800, 600, "White")
+    image = QtGui.QImage(path)
+    colours = {}
+    for x in range(0, 800, 4):
+        for y in range(0, 600, 4):
+            colour = image.pixelColor(x, y)
+            key = "white" if min(colour.red(), colour.green(), colour.blue()) > 250 else (
+                "line" if colour.red() < 90 and colour.blue() > colour.red() + 15 else "face")
+            colours[key] = colours.get(key, 0) + 1
+    assert colours.get("face", 0) > 3000, colours
+    assert colours.get("line", 0) > 300, colours
+    document.QuadMesh.ViewObject.Visibility = False
+    spin(0.3)
+    view.saveImage(path + ".hidden.png", 800, 600, "White")
+    assert QtGui.QImage(path + ".hidden.png") != image
+
+
+def main():
+    record_panels()
+    passed = failed = 0
+    for function in TESTS:
+        name = function.__name__.replace("_", " ")
+        try:
+            function()
+            passed += 1
+            print("passed", name, flush=True)
+        except BaseException:
+            failed += 1
+            print("FAILED", name, flush=True)
+            print("  " + traceback.format_exc().replace("\n", "\n  "), flush=True)
+        finally:
+            if FreeCADGui.Control.activeDialog():
+                FreeCADGui.Control.closeDialog()
+            for name in list(FreeCAD.listDocuments()):
+                FreeCAD.closeDocument(name)
+    with open(COUNTS_FILE, "w") as stream:
+        print(passed, failed, file=stream)
+    return 1 if failed else 0
+
+
+def go():
+    try:
+        status = main()
+    except BaseException:
+        traceback.print_exc()
+        status = 1
+    sys.stdout.flush()
+    os._exit(status)  # QApplication.exit would give status 0
+
+
+QtCore.QTimer.singleShot(1500, go)

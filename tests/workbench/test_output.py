@@ -1,0 +1,142 @@
+"""What ends up in the output folder, and that it does not depend on chance."""
+import json
+import os
+
+import pytest
+from conftest import wavy_face
+
+import trimquad
+from trimquad.output import OutputFolder
+from trimquad.source import Source
+
+
+def contents(folder):
+    return {p.name: p.read_bytes() for p in folder.iterdir() if p.name != "report.json"}
+
+
+def test_results_are_the_same_bytes_from_run_to_run_and_for_any_number_of_threads(example_path, tmp_path):
+    folders = []
+    for threads in (1, 2, 4, 1):
+        options = trimquad.Options(quads=300, threads=threads)
+        out = tmp_path / str(len(folders))
+        trimquad.convert(example_path("box_with_fillets"), options).write(str(out))
+        folders.append(contents(out))
+    assert len(folders[0]) == 10
+    assert all(folder == folders[0] for folder in folders[1:])
+
+
+def test_one_region_has_no_number_in_its_file_names(sheet, tmp_path):
+    options = trimquad.Options(quads=50, write=["seamless", "gridmap", "quads", "nurbs", "report"])
+    names = trimquad.convert(sheet, options).write(str(tmp_path / "out"))
+    assert names == ["gridmap.obj", "nurbs.brep", "nurbs.step", "quads.obj", "report.json", "seamless.obj"]
+    assert sorted(os.listdir(tmp_path / "out")) == names
+
+
+def test_files_of_an_earlier_result_do_not_stay_beside_a_new_one(sheet, example_path, tmp_path):
+    out = tmp_path / "out"
+    trimquad.convert(example_path("box_with_fillets"), trimquad.Options(quads=100)).write(str(out))
+    (out / "notes.txt").write_text("mine")
+    (out / "quads-plan.obj").write_text("mine")
+    trimquad.convert(sheet, trimquad.Options(quads=50)).write(str(out))
+    assert sorted(os.listdir(out)) == [
+        "gridmap.obj", "notes.txt", "nurbs.brep", "nurbs.step", "quads-plan.obj", "quads.obj", "report.json"
+    ]
+
+
+def test_files_in_a_folder_without_a_report_are_left_alone(sheet, tmp_path):
+    (tmp_path / "quads-7.obj").write_text("mine")
+    trimquad.convert(sheet, trimquad.Options(quads=50)).write(str(tmp_path))
+    assert (tmp_path / "quads-7.obj").read_text() == "mine"
+
+
+def test_a_folder_left_by_an_exception_is_as_it_was(tmp_path):
+    (tmp_path / "quads.obj").write_text("old")
+    with pytest.raises(RuntimeError):
+        with OutputFolder(tmp_path) as folder:
+            folder.write_text("quads.obj", "new")
+            raise RuntimeError
+    assert os.listdir(tmp_path) == ["quads.obj"]
+    assert (tmp_path / "quads.obj").read_text() == "old"
+
+
+def test_a_new_folder_left_by_an_exception_is_gone(tmp_path):
+    with pytest.raises(RuntimeError):
+        with OutputFolder(tmp_path / "a" / "b") as folder:
+            folder.write_text("quads.obj", "new")
+            raise RuntimeError
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_full_disk_is_one_line(sheet, tmp_path, monkeypatch):
+    result = trimquad.convert(sheet, trimquad.Options(quads=50))
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(OutputFolder, "write_text", full)
+    with pytest.raises(trimquad.Error, match="No space left on device; free some space") as caught:
+        result.write(str(tmp_path / "out"))
+    assert caught.value.kind == "input"
+    assert not (tmp_path / "out").exists()
+
+
+def test_cancelling_before_and_during_a_conversion_raises_cancelled(sheet):
+    progress = trimquad.Progress()
+    progress.cancel()
+    with pytest.raises(trimquad.Error) as caught:
+        trimquad.convert(sheet, progress=progress)
+    assert caught.value.kind == "cancelled"
+
+
+def test_progress_only_rises_and_ends_at_one(sheet, tmp_path):
+    progress = trimquad.Progress()
+    result = trimquad.convert(sheet, trimquad.Options(quads=50), progress)
+    before_writing = progress.fraction
+    assert 0.5 < before_writing < 1
+    result.write(str(tmp_path), progress)
+    assert progress.fraction == pytest.approx(1)
+
+
+def test_a_region_that_fails_does_not_stop_the_others(tmp_path, capsys):
+    """A sphere needs singularities; a sheet beside it does not."""
+    import FreeCAD
+    import Part
+
+    from trimquad import cli
+
+    both = Part.makeCompound([wavy_face(), Part.makeSphere(10, FreeCAD.Vector(200, 0, 0))])
+    path = tmp_path / "both.brep"
+    both.exportBrep(str(path))
+    status = cli.main(["convert", str(path), "--out", str(tmp_path / "out"), "--quads", "300", "--quiet"])
+    lines = capsys.readouterr().err.splitlines()
+    report = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert status == 3
+    assert len(lines) == 1 and "1 of 2 regions failed" in lines[0]
+    assert sorted(r["status"] for r in report["regions"]) == ["failed", "ok"]
+    failed = next(r for r in report["regions"] if r["status"] == "failed")
+    assert failed["error"]["stage"] and failed["error"]["message"]
+    names = os.listdir(tmp_path / "out")
+    assert "nurbs.step" in names and sum(n.startswith("quads") for n in names) == 1
+
+
+def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
+    import FreeCAD
+
+    result = trimquad.convert(sheet, trimquad.Options(quads=50, write=["pictures", "fcstd"]))
+    assert result.write(str(tmp_path)) == ["map.png", "nurbs.png", "quads.png", "trimquad.FCStd"]
+    document = FreeCAD.openDocument(str(tmp_path / "trimquad.FCStd"))
+    try:
+        kinds = sorted(o.TypeId for o in document.Objects)
+        assert kinds == ["Mesh::FeaturePython", "Part::Feature"]
+        assert document.QuadMesh.Mesh.CountFacets > 50
+    finally:
+        FreeCAD.closeDocument(document.Name)
+
+
+def test_only_the_chosen_faces_are_converted(example_path):
+    import Part
+
+    box = Part.makeBox(30, 20, 10)
+    result = trimquad.convert(Source(box, ["Face1", "Face6"]), trimquad.Options(quads=100))
+    assert len(result.regions) == 2
+    assert result.shape.Area == pytest.approx(box.Face1.Area + box.Face6.Area, rel=1e-6)
