@@ -48,7 +48,7 @@ std::optional<Eigen::VectorXd> convexStart(const SurfaceMesh& mesh, const SeamGr
   const auto loops = boundaryLoops(mesh);
   const auto lift = wedgeLifts(mesh, seams);
 
-  // Loops that are held: the longest one, or the two that the seam path joins.
+  // Loops that are held: the outer one, or the two that the seam path joins.
   std::vector<int> loopOf(mesh.n_vertices(), -1);
   for (int l = 0; l < int(loops.size()); ++l)
     for (const auto h : loops[l]) loopOf[mesh.from_vertex_handle(h).idx()] = l;
@@ -70,10 +70,8 @@ std::optional<Eigen::VectorXd> convexStart(const SurfaceMesh& mesh, const SeamGr
     // Counter-clockwise around a vertex of the lower end (the surface above it) means against u.
     if (around[held[0]] > 0) std::swap(held[0], held[1]);
   } else {
-    int longest = 0;
-    for (int l = 1; l < int(loops.size()); ++l)
-      if (loopLength(mesh, loops[l]) > loopLength(mesh, loops[longest])) longest = l;
-    held.push_back(longest);
+    if (!seams.outerLoop) return std::nullopt;
+    held.push_back(*seams.outerLoop);
   }
 
   const int vertices = int(mesh.n_vertices()), loopCount = int(loops.size());

@@ -44,6 +44,13 @@ MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const Sea
   }
 }
 
+void MapEnergy::setScaffold(int first, double weight) {
+  for (int f = first; f < int(local_.size()); ++f) {
+    local_[f].area = weight;
+    local_[f].following = 0;
+  }
+}
+
 MapEnergy::Jacobian MapEnergy::jacobian(int face, const Eigen::VectorXd& x) const {
   const auto& local = local_[face];
   Eigen::Matrix<double, 6, 1> corners;
@@ -99,6 +106,7 @@ void MapEnergy::addTriangle(int face, double dP, double dQ, double dPP, double d
 
   Eigen::Vector4d gradient;
   gradient << dP * n, dQ * m;
+  follow *= local.following;
   gradient += 4 * follow * Eigen::Vector4d(j.fzReal - 1, j.fzImag, j.fzbarReal, j.fzbarImag);
 
   // Positive part of the radial block, in closed form.

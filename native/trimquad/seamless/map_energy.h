@@ -26,6 +26,10 @@ class MapEnergy {
  public:
   MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis);
 
+  /// Makes triangles from `first` on part of a scaffold: each has the weight `weight` instead of its area,
+  /// and they do not follow their target's directions.
+  void setScaffold(int first, double weight);
+
   /// Jacobian of a triangle as derivatives by z and its conjugate: J a = fz a + fzbar conj(a).
   struct Jacobian {
     double fzReal, fzImag, fzbarReal, fzbarImag;
@@ -58,6 +62,7 @@ class MapEnergy {
     std::array<int, 6> coordinate;           ///< u0 v0 u1 v1 u2 v2 in x
     Eigen::Matrix<double, 4, 6> toJacobian;  ///< corner coordinates to (Re fz, Im fz, Re fzbar, Im fzbar)
     double area;
+    double following = 1;  ///< factor of `follow`
   };
   void addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ, double tangentP,
                    double tangentQ, const Jacobian& j, double follow, Eigen::VectorXd& gradientX,

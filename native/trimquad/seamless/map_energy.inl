@@ -11,7 +11,7 @@ double MapEnergy::value(const Eigen::VectorXd& x, const Density& density, double
     const Jacobian j = jacobian(f, x);
     const double off = 2 * ((j.fzReal - 1) * (j.fzReal - 1) + j.fzImag * j.fzImag + j.fzbarReal * j.fzbarReal +
                             j.fzbarImag * j.fzbarImag);
-    sum += local_[f].area * (density(j.norm2(), j.det()).value + follow * off);
+    sum += local_[f].area * (density(j.norm2(), j.det()).value + local_[f].following * follow * off);
   }
   return sum;
 }

@@ -51,7 +51,10 @@ SeamGraph seamGraph(const SurfaceMesh& mesh, const CrossField& field) {
   TRIMQUAD_ASSERT(loops.size() == field.loopTurns.size());
   std::vector<int> ends;
   for (int l = 0; l < int(loops.size()); ++l)
-    if (field.loopTurns[l] == 0) ends.push_back(l);
+    if (field.loopTurns[l] == 0)
+      ends.push_back(l);
+    else if (field.loopTurns[l] == 1)
+      seams.outerLoop = l;
   if (ends.empty()) return seams;
   TRIMQUAD_ASSERT(ends.size() == 2);
   seams.rotation.push_back(0);

@@ -16,6 +16,7 @@ struct SeamGraph {
   };
   std::vector<std::optional<Crossing>> crossing;  ///< by halfedge index, from its face to the opposite one
   std::vector<int> rotation;                      ///< by branch, quarter turns
+  std::optional<int> outerLoop;                   ///< of a plane region, in the order of boundaryLoops
 };
 
 /// The seams that a field needs: a path that opens a tube, so that its period is free. Everything else is one

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/boundary_image.h"
 #include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
@@ -21,6 +22,20 @@ MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, double edg
       target[f.idx()][k] = Eigen::Vector2d((p[k] - p[0]).dot(u), (p[k] - p[0]).dot(v)) / edgeLength;
   }
   return target;
+}
+
+/// Whether the boundary's image, of a map in one chart, meets itself: then the map covers a part of the plane
+/// twice.
+bool overlaps(const Parametrization& map) {
+  std::vector<BoundarySegment> segments;
+  for (const auto& loop : boundaryLoops(map.mesh)) {
+    const int base = int(segments.size()), size = int(loop.size());
+    for (int i = 0; i < size; ++i) {
+      const auto inner = map.mesh.opposite_halfedge_handle(loop[size - 1 - i]);
+      segments.push_back({map.from(inner), map.to(inner), base + (i + 1) % size});
+    }
+  }
+  return firstContact(segments, std::nullopt).has_value();
 }
 
 }  // namespace
@@ -49,6 +64,12 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   const Eigen::VectorXd z =
       solveMap(mesh, seams, target, field.index, basis, "seamless", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
+  // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
+  if (seams.rotation.empty() && overlaps(map)) {
+    map.counters.scaffolded = true;
+    const Eigen::VectorXd apart = oneToOneMap(mesh, seams, target, basis, map.counters, progress);
+    static_cast<Parametrization&>(map) = exactMap(mesh, basis, apart, false);
+  }
   map.seams = seams;
   map.target = target;
   map.index = field.index;

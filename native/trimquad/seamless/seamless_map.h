@@ -20,8 +20,10 @@ struct MapCounters {
   int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
   int untangleIterations = 0;  ///< Newton steps until none was
   bool convexStart =
-      false;           ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
-  int iterations = 0;  ///< Newton steps of the final optimisation
+      false;  ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
+  bool scaffolded =
+      false;  ///< whether the map covered a part of the plane twice, and was grown again in a scaffold
+  int iterations = 0;                             ///< Newton steps of the final optimisation
   double distortionStart = 0, distortionEnd = 0;  ///< mean symmetric Dirichlet energy, 4 for an isometry
 };
 
