@@ -38,6 +38,7 @@ int connectedGroups(const TopoDS_Shape& shape) {
   };
   int groups = faces.Extent();
   for (int e = 1; e <= facesOfEdge.Extent(); ++e) {
+    if (facesOfEdge(e).IsEmpty()) continue;
     const int first = root(faces.FindIndex(facesOfEdge(e).First()));
     for (const TopoDS_Shape& face : facesOfEdge(e))
       if (const int other = root(faces.FindIndex(face)); other != root(first))

@@ -104,7 +104,7 @@ void Welder::add(int faceIndex) {
     for (int k = 0; k < int(nodes.size()); ++k) {
       vertex[polygon->Node(k + 1) - 1] = nodes[k];
       if (k == 0) continue;
-      const auto [a, b] = std::minmax(polygon->Node(k), polygon->Node(k + 1));
+      const auto [a, b] = std::minmax({polygon->Node(k), polygon->Node(k + 1)});
       sideOfNodes.emplace(std::array<int, 2>{a, b}, sidesOfEdge_[edge][k - 1]);
     }
   }
@@ -123,7 +123,7 @@ void Welder::add(int faceIndex) {
       const gp_Pnt2d uv = triangulation->UVNode(node[k]);
       triangle.vertex[k] = vertex[node[k] - 1];
       triangle.uv[k] = {uv.X(), uv.Y()};
-      const auto [a, b] = std::minmax(node[k], node[(k + 1) % 3]);
+      const auto [a, b] = std::minmax({node[k], node[(k + 1) % 3]});
       const auto [entry, isNew] = sideOfNodes.emplace(std::array<int, 2>{a, b}, int(mesh_.sides.size()));
       if (isNew) mesh_.sides.push_back({vertex[a - 1], vertex[b - 1], std::nullopt, 0, 0});
       triangle.side[k] = entry->second;
@@ -214,9 +214,10 @@ class Splitter {
       a.vertex[next] = middle, a.uv[next] = uv, a.side[k] = head, a.side[next] = cut;
       b.vertex[k] = middle, b.uv[k] = uv, b.side[k] = tail, b.side[last] = cut;
       mesh_.triangles[t] = a;
+      const size_t other = mesh_.triangles.size();
       mesh_.triangles.push_back(b);
       divideTriangle(t);
-      divideTriangle(mesh_.triangles.size() - 1);
+      divideTriangle(other);
       return;
     }
   }
