@@ -78,24 +78,34 @@ Point bernsteinPoint(std::vector<Point> c, double a, double b, double s) {
   return c[0];
 }
 
-/// A curve of degree 9, C1 or C2, through `jet(s)`: one Hermite piece between neighbouring breaks, halved
-/// until `deviation(s, value)` is at most `tolerance` in all of its test points (or the piece is 1e-5 of the
-/// range). (two-point Hermite interpolation; the joints' knots have multiplicity 9 - continuity) \param
-/// breaks ascending; where `jet` is less smooth than inside
+/// A curve of degree 9, C1 or C2, through `jet(s)`: Hermite pieces, cut until `deviation(s, value)` is at
+/// most `tolerance` in all test points of each (or the piece is 1e-5 of the range). Cuts go through the break
+/// nearest to a piece's middle, and through the middle where there is no break left. (two-point Hermite
+/// interpolation; the joints' knots have multiplicity 9 - continuity) \param breaks ascending, the range's
+/// ends first and last; where `jet` is less smooth than inside
 template <int Dim, class Jet, class Deviation>
 SplineCurve<Dim> hermiteChain(const Jet& jet, const std::vector<double>& breaks, int continuity,
                               const Deviation& deviation, double tolerance, const Progress& progress) {
   using Point = Eigen::Matrix<double, Dim, 1>;
-  constexpr int n = kChainDegree, tests = 13;
+  constexpr int n = kChainDegree, tests = 24;
   const double narrowest = 1e-5 * (breaks.back() - breaks.front());
+  const auto cut = [&](double a, double b) {
+    const double middle = (a + b) / 2;
+    const auto above = std::lower_bound(breaks.begin(), breaks.end(), middle);
+    double best = middle, distance = b - a;
+    for (auto it = above == breaks.begin() ? above : above - 1; it != breaks.end() && it <= above; ++it)
+      if (*it > a && *it < b && std::abs(*it - middle) < distance) {
+        best = *it;
+        distance = std::abs(best - middle);
+      }
+    return best;
+  };
   struct End {
     double s;
     CurveJet<Dim> jet;
   };
-  std::vector<End> ahead;  // breaks still to reach, the next one last
-  for (auto it = breaks.rbegin(); it != breaks.rend(); ++it) ahead.push_back({*it, jet(*it)});
-  End from = ahead.back();
-  ahead.pop_back();
+  End from{breaks.front(), jet(breaks.front())};
+  std::vector<End> ahead{{breaks.back(), jet(breaks.back())}};  // joints still to reach, the next one last
   std::vector<double> joints{from.s};
   std::vector<std::vector<Point>> pieces;
   while (!ahead.empty()) {
@@ -108,8 +118,8 @@ SplineCurve<Dim> hermiteChain(const Jet& jet, const std::vector<double>& breaks,
       good = deviation(s, bernsteinPoint(piece, a, b, s)) <= tolerance;
     }
     if (!good && b - a > narrowest) {
-      const double middle = (a + b) / 2;
-      ahead.push_back({middle, jet(middle)});
+      const double s = cut(a, b);
+      ahead.push_back({s, jet(s)});
       continue;
     }
     pieces.push_back(std::move(piece));
