@@ -11,6 +11,8 @@ using Eigen::Vector3d;
 constexpr double kGradation = 0.4;  ///< growth of the wanted length per length
 constexpr int kGradationSweeps = 3;
 constexpr double kSmoothing = 0.8;    ///< share of the way to the neighbours' middle
+constexpr double kOffMiddle = 0.35;   ///< how far a split may be off the edge's middle, in edge lengths
+constexpr double kSplitLoss = 0.2;    ///< least share of the old quality that a split must leave
 constexpr double kGoodEnough = 0.25;  ///< quality down to which smoothing may go
 
 }  // namespace
@@ -86,13 +88,30 @@ VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfa
   return mesh.add_vertex(point);
 }
 
+double WorkingMesh::splitQuality(HalfedgeHandle h, const Vector3d& point, const Vector3d& pointNormal) const {
+  double worst = 1;
+  for (const auto g : {h, mesh.opposite_halfedge_handle(h)}) {
+    const auto a = mesh.from_vertex_handle(g), b = mesh.to_vertex_handle(g),
+               c = mesh.to_vertex_handle(mesh.next_halfedge_handle(g));
+    const Vector3d base = pointNormal + normal[c.idx()];
+    worst =
+        std::min({worst, quality(mesh.point(a), point, mesh.point(c), (base + normal[a.idx()]).normalized()),
+                  quality(point, mesh.point(b), mesh.point(c), (base + normal[b.idx()]).normalized())});
+  }
+  return worst;
+}
+
 bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   const auto h = mesh.halfedge_handle(e, 0);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const Vector3d middle = 0.5 * (mesh.point(a) + mesh.point(b));
   const auto foot = surface_.closest(middle);
-  const bool between = (foot.point - middle).norm() <= 0.5 * length(e) &&
-                       foot.normal.dot(normal[a.idx()] + normal[b.idx()]) > 0;
+  const Vector3d away = foot.point - middle;
+  const bool between = away.norm() <= kOffMiddle * length(e) &&
+                       foot.normal.dot(normal[a.idx()] + normal[b.idx()]) > 0 &&
+                       splitQuality(h, foot.point, foot.normal) >
+                           kSplitLoss * std::min(quality(mesh.face_handle(h)),
+                                                 quality(mesh.face_handle(mesh.opposite_halfedge_handle(h))));
   if (!between && !always) return false;
   const double inherited = 0.5 * (size[a.idx()] + size[b.idx()]);
   const auto v = addVertex(foot.point, foot.normal);

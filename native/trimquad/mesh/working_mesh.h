@@ -32,7 +32,8 @@ class WorkingMesh {
                         const Eigen::Vector3d& normal);
   double quality(FaceHandle f) const;
   /// The worst quality around `v` if it were at `point`, leaving out triangles that also contain `except`.
-  double worstAround(VertexHandle v, const Eigen::Vector3d& point, VertexHandle except = VertexHandle()) const;
+  double worstAround(VertexHandle v, const Eigen::Vector3d& point,
+                     VertexHandle except = VertexHandle()) const;
   double length(EdgeHandle e) const { return (mesh.calc_edge_vector(e)).norm(); }
   double wantedLength(EdgeHandle e) const;
   /// An inner edge between two boundary vertices.
@@ -64,6 +65,9 @@ class WorkingMesh {
 
  private:
   VertexHandle addVertex(const Eigen::Vector3d& point, const Eigen::Vector3d& surfaceNormal);
+  /// The worst quality of the four triangles that splitting the halfedge's edge at `point` makes.
+  double splitQuality(HalfedgeHandle h, const Eigen::Vector3d& point,
+                      const Eigen::Vector3d& pointNormal) const;
   double sizeAt(const Eigen::Vector3d& point) const;
 
   const TrueSurface& surface_;
