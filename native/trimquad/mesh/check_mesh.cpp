@@ -163,12 +163,23 @@ void renumberVertices(TriangleSoup& soup, const std::vector<int>& fan, RepairRep
   soup.points = std::move(points);
 }
 
+/// Everything but triangles without area.
+void repairConnectivity(TriangleSoup& soup, RepairReport& report) {
+  const std::vector<int> place = firstEqualPoint(soup.points);
+  report.repeatedCorners += dropRepeatedCorners(soup, place, report.triangle);
+  report.duplicateTriangles += dropDuplicates(soup, place, report.triangle);
+  if (soup.triangles.empty()) throw inputError("tessellate", "no triangle of the mesh has an area");
+  const SideGluing gluing = glueSides(soup, place);
+  renumberVertices(soup, cornerFans(soup, gluing), report);
+  requireManifoldEdges(soup);
+  report.turnedTriangles += orient(soup, gluing);
+}
+
 }  // namespace
 
-bool RepairReport::changed() const {
+int RepairReport::count() const {
   return unusedVertices + repeatedCorners + duplicateTriangles + weldedVertices + splitVertices +
-             turnedTriangles + flatTriangles >
-         0;
+         turnedTriangles + flatTriangles;
 }
 
 std::string RepairReport::summary() const {
@@ -192,17 +203,13 @@ RepairReport repair(TriangleSoup& soup) {
   RepairReport report;
   report.triangle.resize(soup.triangles.size());
   std::iota(report.triangle.begin(), report.triangle.end(), 0);
-
-  const std::vector<int> place = firstEqualPoint(soup.points);
-  report.repeatedCorners = dropRepeatedCorners(soup, place, report.triangle);
-  report.duplicateTriangles = dropDuplicates(soup, place, report.triangle);
-  if (soup.triangles.empty()) throw inputError("tessellate", "no triangle of the mesh has an area");
-  const SideGluing gluing = glueSides(soup, place);
-  const std::vector<int> fan = cornerFans(soup, gluing);
-  renumberVertices(soup, fan, report);
-  requireManifoldEdges(soup);
-  report.turnedTriangles = orient(soup, gluing);
-  report.flatTriangles = resolveFlatTriangles(soup, report.triangle);
+  // Welding can bring two boundary edges between the same vertices, and a triangle without area that goes can
+  // leave two on each other: both are one edge then. Every round glues more sides, so that the rounds end.
+  for (int before = -1; before < report.count();) {
+    before = report.count();
+    repairConnectivity(soup, report);
+    report.flatTriangles += resolveFlatTriangles(soup, report.triangle);
+  }
   return report;
 }
 

@@ -18,7 +18,8 @@ struct RepairReport {
   int flatTriangles = 0;       ///< triangles without area, resolved by flipping or collapsing an edge
   std::vector<int> triangle;   ///< by triangle of the repaired soup: its number before
 
-  bool changed() const;
+  int count() const;  ///< all of them together
+  bool changed() const { return count() > 0; }
   /// One line for people: "3 duplicate triangles dropped, 8 vertices welded"; empty if nothing changed.
   std::string summary() const;
 };
