@@ -7,17 +7,17 @@
 
 namespace trimquad {
 
-/// A region's whole grid map unrolled into one plane: a rectangle of it, or a strip that closes after `period` quads
-/// in u (a tube). Coordinates are the grid map's own up to one quarter-turn rotation.
+/// A region's whole grid map unrolled into one plane: a rectangle of it, or a strip that closes after
+/// `period` quads in u (a tube). Coordinates are the grid map's own up to one quarter-turn rotation.
 struct Chart {
   FixedScale scale;
   std::vector<FixedVector> corner;  ///< by halfedge index, as in Parametrization; modulo the period in u
   std::optional<Quanta> period;     ///< of u; a whole number of quads
 };
 
-/// Throws Error(Stage, "fit") where one chart cannot hold the region: transitions with rotations, periods in both
-/// directions or with an oblique translation, or an image that covers a part of the plane twice (exact test of the
-/// boundary loops, modulo the period).
+/// Throws Error(Stage, "fit") where one chart cannot hold the region: transitions with rotations, periods in
+/// both directions or with an oblique translation, or an image that covers a part of the plane twice (exact
+/// test of the boundary loops, modulo the period).
 Chart chart(const GridMap& map);
 
 }  // namespace trimquad

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "trimquad/base/error.h"
@@ -19,6 +20,17 @@ constexpr int kMaxPoles = 100000;
 /// most for another to be worth it.
 constexpr int kMaxCorrections = 4;
 constexpr double kCorrectionPays = 0.85;
+/// Multiple of the tolerance below which parameters are corrected, unless knots alone do not help: feet on a
+/// surface that is still far from the region would bring its waves into the parameters.
+constexpr double kCorrectionStarts = 20;
+/// Part of the deviation with the chart's parameters that the one with corrected parameters must stay under
+/// to be kept.
+constexpr double kCorrectedWins = 0.7;
+/// How much more the samples that deviate most weigh in the next round, to even out the largest deviations.
+constexpr double kEmphasis = 10;
+/// Only where the deviation is above this part of the largest one are knots inserted: it reaches a few spans
+/// beyond its cause, where it goes away by itself. Along a crease it does not, and all that fail are refined.
+constexpr double kWorstPart = 0.3;
 /// Refinements in a row that may bring less than a fifth.
 constexpr int kPatience = 4;
 
@@ -99,12 +111,13 @@ SplineSpace initialSpace(const GridMap& map, const Chart& chart, double seam, in
           initialLine(degree, v0, v1, span, false)};
 }
 
-/// Sets each sample's distance and, unless the foot lies more than a knot interval away, moves its parameter
-/// there.
+/// Sets each sample's distance. Gives the feet as well: each one's parameter, or the sample's own where the
+/// foot lies more than a knot interval away or on the other side.
 Deviation measure(const SplineSurface& surface, const SplineSpace& space, std::vector<SurfaceSample>& samples,
-                  const Progress& progress) {
+                  std::vector<Eigen::Vector2d>& feet, const Progress& progress) {
   Deviation result;
   double sum = 0;
+  feet.resize(samples.size());
   for (int i = 0; i < int(samples.size()); ++i) {
     if (i % 4096 == 0) progress.check();
     auto& s = samples[i];
@@ -118,15 +131,13 @@ Deviation measure(const SplineSurface& surface, const SplineSpace& space, std::v
       result.max = distance;
       result.worst = i;
     }
-    if (!(normal.dot(s.normal) > 0)) {
-      if (result.turnedOver++ == 0) result.firstTurned = i;
-      continue;
-    }
     Eigen::Vector2d move = (foot - s.parameter).cwiseAbs();
     if (surface.closedU) move[0] = std::min(move[0], surface.lastU() - surface.firstU() - move[0]);
-    if (move[0] <= space.u.width(space.u.spanOf(foot[0])) &&
-        move[1] <= space.v.width(space.v.spanOf(foot[1])))
-      s.parameter = foot;
+    const bool near = move[0] <= space.u.width(space.u.spanOf(foot[0])) &&
+                      move[1] <= space.v.width(space.v.spanOf(foot[1]));
+    const bool turnedOver = !(normal.dot(s.normal) > 0);
+    if (turnedOver && result.turnedOver++ == 0) result.firstTurned = i;
+    feet[i] = near && !turnedOver ? foot : s.parameter;
   }
   result.rms = std::sqrt(sum / double(std::max<size_t>(1, samples.size())));
   return result;
@@ -175,21 +186,33 @@ class Fit {
 
   /// Runs rounds until the tolerance holds.
   FittedSurface run() {
+    samples_.refine(space_, progress_);
     for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
       solve();
+      if (rounds_ == 1) start_ = best_ = deviation_.max;
+      best_ = std::min(best_, deviation_.max);
+      if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
       if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified()) return std::move(result_);
-      if (correctionPays()) continue;
-      refine();
+      if (correctionPays()) {
+        correct();
+      } else {
+        refine();
+        chooseParameters();
+      }
     }
     throw unreachable(region_, tolerance_, best_, space_.poles(), position());
   }
 
  private:
+  /// The surface through the samples at their parameters, and its deviation.
   void solve() {
-    samples_.refine(space_, progress_);
+    emphasis_.resize(samples_.samples.size(), 1);
     std::vector<Datum> data;
     data.reserve(samples_.samples.size());
-    for (const auto& s : samples_.samples) data.push_back({s.parameter, s.point, s.weight});
+    for (size_t i = 0; i < samples_.samples.size(); ++i) {
+      const auto& s = samples_.samples[i];
+      data.push_back({s.parameter, s.point, s.weight * emphasis_[i]});
+    }
     auto surface = space_.leastSquares(data, fairness_, progress_);
     for (int attempt = 0; !surface && attempt < 4; ++attempt) {
       stiffen(100);
@@ -198,31 +221,75 @@ class Fit {
     if (!surface) throw stageError("fit", "the normal equations of the surface are singular", region_.name);
     result_.surface = std::move(*surface);
     previous_ = deviation_;
-    deviation_ = measure(result_.surface, space_, samples_.samples, progress_);
-    failing_ = failing(samples_.samples, tolerance_);
-    if (rounds_ == 1) start_ = best_ = deviation_.max;
-    best_ = std::min(best_, deviation_.max);
-    if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
+    deviation_ = measure(result_.surface, space_, samples_.samples, feet_, progress_);
+    failing_ = failing(samples_.samples, threshold(deviation_.max));
+  }
+
+  /// Moves the parameters to the feet.
+  void correct() {
+    ++corrections_;
+    for (size_t i = 0; i < feet_.size(); ++i) {
+      auto& s = samples_.samples[i];
+      s.parameter = feet_[i];
+      const double part = s.distance / deviation_.max;
+      emphasis_[i] = 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
+    }
+  }
+
+  /// On new knots: the chart's parameters, which are smooth where the map is, or those corrected on the
+  /// coarser knots, which carry a trace of these but are free of a rough map's noise; whichever bring the
+  /// surface closer.
+  void chooseParameters() {
+    const bool corrected = corrections_ > 0;
+    corrections_ = 0;
+    samples_.refine(space_, progress_);
+    emphasis_.assign(samples_.samples.size(), 1);
+    auto& samples = samples_.samples;
+    if (corrected) {
+      measure(result_.surface, space_, samples, feet_, progress_);
+      for (size_t i = 0; i < samples.size(); ++i) samples[i].parameter = feet_[i];
+      solve();
+    }
+    const Deviation withFeet = deviation_;
+    const auto feet = feet_;
+    const auto useParameters = [&](const std::vector<Eigen::Vector2d>& parameters) {
+      for (size_t i = 0; i < samples.size(); ++i) samples[i].parameter = parameters[i];
+    };
+    useParameters(samples_.chartParameters());
+    if (!corrected) return;
+    solve();
+    if (withFeet.turnedOver == 0 && withFeet.max < kCorrectedWins * deviation_.max) useParameters(feet);
   }
 
   bool verified() {
     auto control = samples_.control(space_, progress_);
-    const Deviation found = measure(result_.surface, space_, control, progress_);
+    std::vector<Eigen::Vector2d> feet;
+    const Deviation found = measure(result_.surface, space_, control, feet, progress_);
+    for (size_t i = 0; i < control.size(); ++i) control[i].parameter = feet[i];
     result_.maxDeviation = std::max(found.max, deviation_.max);
     result_.rmsDeviation = found.rms;
     result_.rounds = rounds_;
     if (found.max <= tolerance_ && found.turnedOver == 0) return true;
-    failing_ = failing(control, tolerance_);
+    failing_ = failing(control, threshold(found.max));
     deviation_.turnedOver = found.turnedOver;
     return false;
   }
 
+  /// Deviation above which a sample asks for knots.
+  double threshold(double largest) const {
+    return thorough_ ? tolerance_ : std::max(tolerance_, kWorstPart * largest);
+  }
+
+  /// Whether the last refinement has not even halved the deviation.
+  bool stalled() const { return best_ > 0.5 * atRefinement_; }
+
   bool correctionPays() {
-    if (deviation_.max <= tolerance_ || corrections_ >= kMaxCorrections) return false;
+    const bool early = deviation_.max > kCorrectionStarts * tolerance_ && !stalled();
+    if (deviation_.turnedOver > 0) return false;
+    if (deviation_.max <= tolerance_ || early || corrections_ >= kMaxCorrections) return false;
     if (corrections_ > 0 && deviation_.max > kCorrectionPays * previous_.max &&
         deviation_.rms > kCorrectionPays * previous_.rms)
       return false;
-    ++corrections_;
     return true;
   }
 
@@ -235,12 +302,12 @@ class Fit {
       stiffen(30);
       return;
     }
-    idle_ = best_ < 0.8 * lastBest_ ? 0 : idle_ + 1;
-    if (idle_ == 0) lastBest_ = best_;
+    idle_ = best_ < 0.8 * atRefinement_ ? 0 : idle_ + 1;
+    thorough_ = stalled();
+    atRefinement_ = best_;
     if (idle_ > kPatience || !refineKnots(space_, samples_, failing_, narrowest_) ||
         space_.poles() > kMaxPoles)
       throw unreachable(region_, tolerance_, best_, int(result_.surface.poles.size()), position());
-    corrections_ = 0;
   }
 
   void stiffen(double factor) {
@@ -259,8 +326,10 @@ class Fit {
   double narrowest_ = 0;
   FittedSurface result_;
   Deviation deviation_, previous_;
-  std::vector<Eigen::Vector2d> failing_;
-  double start_ = 0, best_ = 0, lastBest_ = 1e300;
+  std::vector<Eigen::Vector2d> failing_, feet_;
+  std::vector<double> emphasis_;  ///< by sample: factor of its weight
+  double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
+  bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0;
 };
 

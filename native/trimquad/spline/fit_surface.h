@@ -21,8 +21,9 @@ struct FittedSurface {
 };
 
 /// Least-squares fit with parameter correction, knots refined only where the deviation exceeds the tolerance.
-/// The domain is a rectangle of whole quads that holds the region's image with room on every side (except around a
-/// closed direction). Throws Error(Stage, "fit") where the tolerance cannot be met, with the deviation reached.
+/// The domain is a rectangle of whole quads that holds the region's image with room on every side (except
+/// around a closed direction). Throws Error(Stage, "fit") where the tolerance cannot be met, with the
+/// deviation reached.
 FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOptions& options,
                          const Progress& progress);
 

@@ -181,7 +181,10 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
     for (int i = 0; i < u.spans(); ++i) {
       const LocalUnknowns unknowns(*this, number, i, j);
       const bool hasData = next != order.end() && next->first == i + u.spans() * j;
-      const double lambda = hasData ? fairness.withData : fairness.withoutData;
+      // Below one quad the energy counts by the knot rectangle: it must not hold back knots that follow a
+      // crease.
+      const double size = std::clamp(u.width(i) * v.width(j), 1e-3, 1.0);
+      const double lambda = size * size * (hasData ? fairness.withData : fairness.withoutData);
       for (int b = 0; b < nv; ++b)
         for (int d = 0; d < nv; ++d)
           local.block(b * nu, d * nu, nu, nu) = lambda * (productsV[j][0](b, d) * productsU[i][2] +

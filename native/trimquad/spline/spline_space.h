@@ -33,6 +33,7 @@ struct Datum {
 };
 
 /// Weights of the thin-plate energy, relative to an integral of squared distance over the parameter plane.
+/// Times the square of a knot rectangle's area where that is below 1 quad^2.
 struct Fairness {
   double withData = 0, withoutData = 0;  ///< on knot rectangles that hold data, and on the others
 };

@@ -58,6 +58,7 @@ SurfaceSamples::SurfaceSamples(const Region& region, const GridMap& map, const C
   }
   for (const auto h : mesh_.halfedges())
     if (mesh_.is_boundary(h)) boundary_.push_back(mesh_.opposite_halfedge_handle(h));
+  for (const auto& s : samples) chartParameter_.push_back(s.parameter);
   order_.assign(mesh_.n_faces(), 0);
   controlOrder_ = order_;
   firstOfFace_ = order_;
@@ -95,7 +96,7 @@ SurfaceSample SurfaceSamples::sample(HalfedgeHandle h, const Eigen::Vector3d& ba
     const VertexHandle v = mesh_.from_vertex_handle(at);
     corner[k] = mesh_.point(v);
     s.point += barycentric[k] * corner[k];
-    s.parameter += barycentric[k] * (chart[k] + difference(chart[k], samples[v.idx()].parameter));
+    s.parameter += barycentric[k] * chart[k];
   }
   s.parameter = wrapped(s.parameter);
   s.normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
@@ -187,6 +188,8 @@ void SurfaceSamples::refine(const SplineSpace& space, const Progress& progress) 
       for (int j = 0; i + j + 1 < q; ++j) cells_.push_back({row + j, row + q - i + j, row + j + 1});
   }
   samples.insert(samples.end(), fresh.begin(), fresh.end());
+  chartParameter_.resize(vertices);
+  for (const auto& s : fresh) chartParameter_.push_back(s.parameter);
   order_ = std::move(order);
 }
 

@@ -33,6 +33,9 @@ class SurfaceSamples {
   /// Samples at other places, denser than those of `samples`; parameters as for new ones.
   const std::vector<SurfaceSample>& control(const SplineSpace& space, const Progress& progress);
 
+  /// By sample: what the chart says.
+  const std::vector<Eigen::Vector2d>& chartParameters() const { return chartParameter_; }
+
   std::vector<SurfaceSample> samples;
   /// Small triangles between samples, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
@@ -60,6 +63,7 @@ class SurfaceSamples {
   std::vector<int> order_, controlOrder_;           ///< by face; 0 where not sampled yet
   std::vector<int> firstOfFace_, firstOfBoundary_;  ///< in `samples`
   std::vector<SurfaceSample> control_;
+  std::vector<Eigen::Vector2d> chartParameter_;  ///< by sample
 };
 
 }  // namespace trimquad
