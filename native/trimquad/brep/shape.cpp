@@ -84,6 +84,9 @@ Shape shapeFromFreeCAD(const std::string& bytes) {
   const std::string complaint =
       "the bytes are not a FreeCAD binary shape; write them with Shape.exportBinary";
   return guarded(Error::Kind::Input, "read", complaint, [&] {
+    // OpenCASCADE prints to the standard output when it meets anything else, so look first.
+    if (bytes.substr(0, 64).find("Open CASCADE Topology V") == std::string::npos)
+      throw inputError("read", complaint);
     std::istringstream stream(bytes, std::ios::binary);
     BinTools_ShapeSet set;
     set.Read(stream);

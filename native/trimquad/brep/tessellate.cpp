@@ -15,7 +15,7 @@ namespace {
 
 /// BRepMesh's triangles only tell where to start on the true surface, so they may be coarser than the
 /// tolerance; the bounds are shares of the diagonal.
-constexpr double kFinestDeflection = 2e-5, kCoarsestDeflection = 1e-3;
+constexpr double kFinestDeflection = 2e-5, kCoarsestDeflection = 2e-4;
 
 void demandPositive(double value, const char* option) {
   if (!std::isfinite(value) || value <= 0)

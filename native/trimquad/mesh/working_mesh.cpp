@@ -13,6 +13,7 @@ constexpr int kGradationSweeps = 3;
 constexpr double kSmoothing = 0.8;    ///< share of the way to the neighbours' middle
 constexpr double kOffMiddle = 0.35;   ///< how far a split may be off the edge's middle, in edge lengths
 constexpr double kSplitLoss = 0.2;    ///< least share of the old quality that a split must leave
+constexpr double kSameSheet = 0.3;    ///< cosine up to which normals count as those of one sheet
 constexpr double kGoodEnough = 0.25;  ///< quality down to which smoothing may go
 
 }  // namespace
@@ -26,11 +27,23 @@ WorkingMesh::WorkingMesh(const Region& region, const RemeshOptions& options)
       surface_(*region.surface),
       options_(options) {
   for (const auto v : mesh.vertices()) {
-    normal.push_back(surface_.closest(mesh.point(v)).normal);
+    normal.push_back(normalOnSheet(v));
     curvatureSize.push_back(sizeAt(mesh.point(v)));
     if (corner[v.idx()]) fixed[v.idx()] = 1;
   }
   size = curvatureSize;
+}
+
+Vector3d WorkingMesh::normalOnSheet(VertexHandle v) const {
+  Vector3d facing = Vector3d::Zero();
+  for (auto f = mesh.cvf_begin(v); f.is_valid(); ++f) facing += mesh.calc_face_normal(*f);
+  const Vector3d nearest = surface_.closest(mesh.point(v)).normal;
+  if (nearest.dot(facing) > kSameSheet * facing.norm()) return nearest;
+  // Two sheets meet here; the middles of the triangles tell them apart.
+  Vector3d sum = Vector3d::Zero();
+  for (auto f = mesh.cvf_begin(v); f.is_valid(); ++f)
+    sum += surface_.closest(mesh.calc_face_centroid(*f)).normal;
+  return sum.norm() > 0 ? Vector3d(sum.normalized()) : nearest;
 }
 
 double WorkingMesh::sizeAt(const Vector3d& point) const {
@@ -125,7 +138,9 @@ VertexHandle WorkingMesh::splitBoundary(EdgeHandle e, double t, const Vector3d& 
   const auto h = mesh.halfedge_handle(e, 0);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const auto curve = edgeCurve[e.idx()];
-  const auto v = addVertex(point, surface_.closest(point).normal);
+  const Vector3d facing = (normal[a.idx()] + normal[b.idx()]).normalized();
+  const Vector3d nearest = surface_.closest(point).normal;
+  const auto v = addVertex(point, nearest.dot(facing) > kSameSheet ? nearest : facing);
   parameter[v.idx()] = t;
   mesh.split(e, v);
   edgeCurve.resize(mesh.n_edges());

@@ -68,6 +68,8 @@ class WorkingMesh {
   /// The worst quality of the four triangles that splitting the halfedge's edge at `point` makes.
   double splitQuality(HalfedgeHandle h, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& pointNormal) const;
+  /// The true normal at a vertex, on the sheet of its triangles where several sheets of the surface meet.
+  Eigen::Vector3d normalOnSheet(VertexHandle v) const;
   double sizeAt(const Eigen::Vector3d& point) const;
 
   const TrueSurface& surface_;
