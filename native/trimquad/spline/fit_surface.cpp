@@ -188,7 +188,8 @@ class Fit {
   FittedSurface run() {
     samples_.refine(space_, progress_);
     for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
-      solve();
+      if (!solved_) solve();
+      solved_ = false;
       if (rounds_ == 1) start_ = best_ = deviation_.max;
       best_ = std::min(best_, deviation_.max);
       if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
@@ -258,7 +259,9 @@ class Fit {
     useParameters(samples_.chartParameters());
     if (!corrected) return;
     solve();
-    if (withFeet.turnedOver == 0 && withFeet.max < kCorrectedWins * deviation_.max) useParameters(feet);
+    const bool keepFeet = withFeet.turnedOver == 0 && withFeet.max < kCorrectedWins * deviation_.max;
+    if (keepFeet) useParameters(feet);
+    solved_ = !keepFeet;
   }
 
   bool verified() {
@@ -329,6 +332,7 @@ class Fit {
   std::vector<Eigen::Vector2d> failing_, feet_;
   std::vector<double> emphasis_;  ///< by sample: factor of its weight
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
+  bool solved_ = false;    ///< the surface and its deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0;
 };

@@ -27,7 +27,7 @@ class SurfaceSamples {
                  const Progress& progress);
 
   /// Adds samples so that every knot rectangle under the region holds about sixteen. Samples that exist keep
-  /// their parameters; new ones start from the chart, moved as the triangle's vertices have been moved.
+  /// their parameters; new ones start from the chart.
   void refine(const SplineSpace& space, const Progress& progress);
 
   /// Samples at other places, denser than those of `samples`; parameters as for new ones.
