@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 constexpr int kRounds = 7;
 constexpr int kSplitPasses = 12, kFlipPasses = 8, kSmoothings = 2;
 constexpr double kLong = 4. / 3, kShort = 4. / 5;
+constexpr double kBad = 0.05;    ///< quality under which a triangle is to go
 constexpr double kUsable = 0.1;  ///< quality that a collapse must leave, unless it was worse before
 
 /// Finds the parameters of boundary edges from their vertices; the corner of a closed curve is both its ends.
@@ -193,6 +194,25 @@ void collapseShort(WorkingMesh& work) {
   }
 }
 
+/// Takes out folded triangles and slivers by whichever collapse leaves the best triangles, whatever the
+/// lengths.
+void collapseBad(WorkingMesh& work) {
+  for (const auto f : work.mesh.faces()) {
+    if (work.quality(f) >= kBad) continue;
+    HalfedgeHandle best;
+    double quality = work.quality(f);
+    for (auto side = work.mesh.cfh_begin(f); side.is_valid(); ++side)
+      for (const HalfedgeHandle h :
+           {HalfedgeHandle(*side), HalfedgeHandle(work.mesh.opposite_halfedge_handle(*side))}) {
+        const auto v = work.mesh.from_vertex_handle(h), to = work.mesh.to_vertex_handle(h);
+        if (work.mesh.is_boundary(v) || makesChord(work, v, to)) continue;
+        if (const auto after = work.qualityAfterCollapse(h); after && *after > quality)
+          best = h, quality = *after;
+      }
+    if (best.is_valid()) work.collapse(best);
+  }
+}
+
 void smoothAll(WorkingMesh& work) {
   for (int i = 0; i < kSmoothings; ++i)
     for (const auto v : work.mesh.vertices())
@@ -229,6 +249,7 @@ void remesh(Region& region, const Model& model, const std::vector<std::vector<do
     if (unwanted > 0) unwanted = removeUnwanted(work, round > 1);
     collapseShort(work);
     flipAll(work);
+    collapseBad(work);
     smoothAll(work);
   }
   if (unwanted > 0)
@@ -238,6 +259,7 @@ void remesh(Region& region, const Model& model, const std::vector<std::vector<do
   splitChords(work);
   for (int i = 0; i < 2; ++i) {
     flipAll(work);
+    collapseBad(work);
     smoothAll(work);
   }
   flipAll(work);
