@@ -107,22 +107,19 @@ def _convert(source, options, progress):
     started = time.monotonic()
     with progress.stage("read"):
         thing = source.read()
-    resolved = options.resolved(source.kind, thing.area, thing.diagonal, os.cpu_count() or 1)
-    tessellate = _tessellate if source.kind == "cad" else _mesh_model
     with progress.stage("tessellate") as native_progress:
-        model = tessellate(thing, resolved, native_progress)
-    result = Result(source, resolved, model)
+        build = _cad_model if source.kind == "cad" else _mesh_model
+        result = build(source, thing, options, native_progress)
     result.started = started
     result.seconds["tessellate"] = time.monotonic() - started
-    result.shape_counts = _shape_counts(source.kind, thing, model)
-    result.repairs = dict(getattr(model, "repairs", {}) or {})
     _map_regions(result, progress)
     _trim(result, progress)
     return result
 
 
-def _tessellate(shape, options, native_progress):
-    return load().tessellate(
+def _cad_model(source, shape, options, native_progress):
+    options = options.resolved("cad", shape.area, shape.diagonal, os.cpu_count() or 1)
+    model = load().tessellate(
         shape,
         edge_length=options.edge_length / TRIANGLES_PER_EDGE,
         tolerance=FIT_MARGIN * options.tolerance,
@@ -130,18 +127,19 @@ def _tessellate(shape, options, native_progress):
         features=options.features,
         progress=native_progress,
     )
+    result = Result(source, options, model)
+    result.shape_counts = {"faces": shape.faces, "edges": shape.edges}
+    return result
 
 
-def _mesh_model(soup, options, native_progress):
-    return load().mesh_model(
-        soup, feature_angle=options.feature_angle, features=options.features, progress=native_progress
-    )
-
-
-def _shape_counts(kind, thing, model):
-    if kind == "cad":
-        return {"faces": thing.faces, "edges": thing.edges}
-    return {"faces": sum(r.triangles for r in model.regions), "edges": len(model.curves)}
+def _mesh_model(source, soup, options, native_progress):
+    trim_angle = options.feature_angle if options.features == "trim" else None
+    model, repairs = load().mesh_model(soup, trim_angle, native_progress)
+    area = sum(region.area for region in model.regions)
+    result = Result(source, options.resolved("mesh", area, model.diagonal, os.cpu_count() or 1), model)
+    result.shape_counts = {"faces": soup.triangles, "edges": model.curves}
+    result.repairs = repairs
+    return result
 
 
 def _map_regions(result, progress):

@@ -14,6 +14,7 @@ def shape_to_bytes(shape):
 
 def shape_from_bytes(data):
     """The Part.Shape of bytes made by `shape_to_bytes` or by the compiled stages."""
+    import FreeCAD  # noqa: F401  (Part does not work without it)
     import Part
 
     with _scratch_file() as (handle, name):

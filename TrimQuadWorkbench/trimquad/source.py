@@ -123,6 +123,7 @@ def _face_number(face):
 def _joined(shapes):
     if len(shapes) == 1:
         return shapes[0]
+    import FreeCAD  # noqa: F401  (Part does not work without it)
     import Part
 
     return Part.makeCompound(list(shapes))

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace trimquad {
+
+struct MapCounters;
+
+/// As report.json has them.
+pybind11::dict countersOf(const MapCounters& counters);
+
+/// Runs a stage without Python's lock, so that regions are worked on at once.
+using Released = pybind11::call_guard<pybind11::gil_scoped_release>;
+
+void bindBase(pybind11::module_& m);
+void bindMesh(pybind11::module_& m);
+void bindBrep(pybind11::module_& m);
+void bindField(pybind11::module_& m);
+void bindSeamless(pybind11::module_& m);
+void bindGridMap(pybind11::module_& m);
+void bindQuads(pybind11::module_& m);
+void bindSpline(pybind11::module_& m);
+
+}  // namespace trimquad

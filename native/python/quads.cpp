@@ -1,0 +1,51 @@
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+#include "trimquad/mesh/region.h"
+#include "trimquad/quads/extract_quads.h"
+
+namespace py = pybind11;
+
+namespace trimquad {
+namespace {
+
+std::vector<VertexHandle> cornersOf(const Region& region) {
+  std::vector<VertexHandle> corners;
+  for (std::size_t v = 0; v < region.corner.size(); ++v)
+    if (region.corner[v]) corners.emplace_back(static_cast<int>(v));
+  return corners;
+}
+
+py::dict statisticsOf(const QuadMesh& quads) {
+  const QuadStatistics s = statistics(quads);
+  py::dict angle, edge, all;
+  angle["mean"] = s.angleDeviation.mean;
+  angle["p95"] = s.angleDeviation.p95;
+  angle["max"] = s.angleDeviation.max;
+  edge["mean"] = s.edgeLength.mean;
+  edge["std"] = s.edgeLength.std;
+  all["quads"] = s.quads;
+  all["trimmed"] = s.trimmed;
+  all["irregular_vertices"] = s.irregularVertices;
+  all["angle_deviation"] = angle;
+  all["edge_length"] = edge;
+  return all;
+}
+
+}  // namespace
+
+void bindQuads(py::module_& m) {
+  py::class_<QuadMesh>(m, "QuadMesh")
+      .def_property_readonly("statistics", &statisticsOf, "the object `quads` of report.json")
+      .def_readonly("euler", &QuadMesh::eulerCharacteristic)
+      .def("to_obj", &writeQuadsObj, Released());
+  m.def(
+      "extract_quads",
+      [](const GridMap& grid, const Region& region, const Progress& progress) {
+        return extractQuads(grid, cornersOf(region), progress);
+      },
+      py::arg("grid"), py::arg("region"), py::arg("progress"), Released(),
+      "The quads of a grid map; the region says which boundary vertices are corners.");
+}
+
+}  // namespace trimquad

@@ -1,0 +1,52 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "bindings.h"
+#include "trimquad/spline/fit_surface.h"
+#include "trimquad/spline/trim_model.h"
+
+namespace py = pybind11;
+
+namespace trimquad {
+namespace {
+
+double edgeTolerance(const SplineModel& model, const SplineFace& face) {
+  double largest = 0;
+  for (const auto& loop : face.loops)
+    for (const SplineCoedge& coedge : loop)
+      largest = std::max(largest, model.edges[coedge.edge.index].tolerance);
+  return largest;
+}
+
+}  // namespace
+
+void bindSpline(py::module_& m) {
+  py::class_<FittedSurface>(m, "FittedSurface")
+      .def_readonly("max_deviation", &FittedSurface::maxDeviation)
+      .def_readonly("rms_deviation", &FittedSurface::rmsDeviation)
+      .def_readonly("rounds", &FittedSurface::rounds);
+  m.def(
+      "fit_surface",
+      [](const Region& region, const GridMap& map, double tolerance, int degree, const Progress& progress) {
+        return fitSurface(region, map, {.tolerance = tolerance, .degree = degree}, progress);
+      },
+      py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("degree"), py::arg("progress"),
+      Released());
+
+  py::class_<SplineModel>(m, "SplineModel").def_property_readonly("faces", [](const SplineModel& model) {
+    py::list faces;
+    for (const SplineFace& face : model.faces) {
+      py::dict entry;
+      entry["region"] = face.region;
+      entry["control_points"] = face.surface.poles.size();
+      entry["edge_tolerance"] = edgeTolerance(model, face);
+      faces.append(entry);
+    }
+    return faces;
+  });
+  m.def("trim_model", &trimModel, py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"),
+        py::arg("progress"), Released());
+}
+
+}  // namespace trimquad
