@@ -5,6 +5,7 @@
 #include <map>
 
 #include "support/trim_samples.h"
+#include "trimquad/base/error.h"
 #include "trimquad/spline/trim_loops.h"
 
 namespace trimquad {
@@ -108,6 +109,57 @@ TEST(TrimModel, twoCurvedSheetsShareOneEdge) {
   EXPECT_EQ(model.edges.size(), 7u);
   EXPECT_EQ(model.vertices.size(), 6u);
   EXPECT_FALSE(model.shells[0].solid);
+}
+
+TEST(TrimModel, tangentSheetsMeetLooselyAndSaySo) {
+  const auto model = tangentSheets(2e-4).trim();
+  EXPECT_EQ(model.looseEdges, 1);
+  EXPECT_EQ(model.edges.size(), 7u);
+  const auto gaps = measuredGaps(model);
+  EXPECT_GT(gaps.edge, 1e-4);
+  EXPECT_LE(gaps.edge, gaps.edgeTolerance);
+  EXPECT_LT(gaps.edgeTolerance, 3e-4);
+}
+
+TEST(TrimModel, jaggedBoundaryIsSmoothedWithinTheTolerance) {
+  auto sheet = roundSheet();
+  sheet.tolerance = 0.02;
+  auto& circle = sheet.model.curves[0];
+  const auto smooth = circle.curve;
+  circle.curve = std::make_shared<FunctionCurve>(0, smooth->last(), [=](double t) {
+    return Eigen::Vector3d(smooth->point(t) * (1 + 5e-4 * std::sin(300 * t)));
+  });
+  const auto model = sheet.trim();
+  const auto& loop = model.faces[0].loops[0];
+  for (const auto& coedge : loop) {
+    EXPECT_LT(coedge.curve.poles.size(), 40u);
+    for (int i = 0; i <= 100; ++i) {
+      const auto& c = coedge.curve;
+      EXPECT_NEAR(c.point(c.first() + (c.last() - c.first()) * i / 100).norm(), 5, 0.01);
+    }
+  }
+}
+
+TEST(TrimModel, crossingBoundariesAreAnError) {
+  TrimCase c = roundSheet(4.6);
+  try {
+    c.trim();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::Stage);
+    EXPECT_EQ(error.where(), "Face1");
+  }
+}
+
+TEST(Sheet, movedSeamIsTheSameSurface) {
+  const auto closed = tube({}).fits[0]->surface;
+  for (const double u : {5.0, 7.3, 23.9}) {
+    const auto moved = withSeamAt(closed, u);
+    EXPECT_EQ(moved.firstU(), u);
+    EXPECT_NEAR(moved.lastU(), u + kRings, 1e-12);
+    for (double x = u; x < u + kRings; x += 0.37)
+      EXPECT_LT((moved.point(x, 3.1) - closed.point(closed.wrappedU(x), 3.1)).norm(), 1e-12);
+  }
 }
 
 TEST(TrimModel, failedNeighbourLeavesFreeEdges) {

@@ -223,8 +223,35 @@ inline TrimCase rectangleSheet() {
   return c;
 }
 
-/// A wavy sheet trimmed by a circle, with three round holes.
-inline TrimCase roundSheet() {
+/// Two wavy sheets, [0, 5] x [0, 6] and [5, 10] x [0, 6], that meet smoothly but for `offset` between their
+/// heights.
+inline TrimCase tangentSheets(double offset) {
+  TrimCase c;
+  const auto lifted = [](double by) {
+    return [by](double x, double y) { return Eigen::Vector3d(wavy(x, y) + Eigen::Vector3d(0, 0, by)); };
+  };
+  const SplineSurface surfaces[] = {interpolated(wavy, -1, 11, 24, -1, 7, 16),
+                                    interpolated(lifted(offset), -1, 11, 24, -1, 7, 16)};
+  const Eigen::Vector2d at[] = {{0, 0}, {5, 0}, {10, 0}, {10, 6}, {5, 6}, {0, 6}};
+  std::vector<CornerId> corners;
+  for (const auto& p : at) corners.push_back(c.corner(wavy(p[0], p[1])));
+  const auto line = [&](int i, int j) {
+    const Eigen::Vector2d p = at[i], d = at[j] - at[i];
+    return c.curve(0, 1, corners[i], corners[j],
+                   [=](double t) { return wavy(p[0] + t * d[0], p[1] + t * d[1]); });
+  };
+  const CurveId middle = line(1, 4);
+  c.region(surfaces[0], {{{line(0, 1), true}, {middle, true}, {line(4, 5), true}, {line(5, 0), true}}},
+           dropZ);
+  c.region(surfaces[1], {{{line(1, 2), true}, {line(2, 3), true}, {line(3, 4), true}, {middle, false}}},
+           dropZ);
+  c.model.shells.push_back({{0, 1}, {}});
+  return c;
+}
+
+/// A wavy sheet trimmed by a circle of radius 5, with three round holes; the first one, of radius 1, at
+/// (holeX, 1).
+inline TrimCase roundSheet(double holeX = 2) {
   TrimCase c;
   const auto surface = interpolated(wavy, -6, 6, 24, -6, 6, 24);
   const auto circle = [&](double x, double y, double r) {
@@ -233,7 +260,7 @@ inline TrimCase roundSheet() {
   };
   const int r = c.region(surface,
                          {{{circle(0, 0, 5), true}},
-                          {{circle(2, 1, 1), false}},
+                          {{circle(holeX, 1, 1), false}},
                           {{circle(-2, 1.5, 0.7), false}},
                           {{circle(0.3, -2.5, 1.1), false}}},
                          dropZ);
