@@ -34,17 +34,19 @@ void bindSpline(py::module_& m) {
       py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("degree"), py::arg("progress"),
       Released());
 
-  py::class_<SplineModel>(m, "SplineModel").def_property_readonly("faces", [](const SplineModel& model) {
-    py::list faces;
-    for (const SplineFace& face : model.faces) {
-      py::dict entry;
-      entry["region"] = face.region;
-      entry["control_points"] = face.surface.poles.size();
-      entry["edge_tolerance"] = edgeTolerance(model, face);
-      faces.append(entry);
-    }
-    return faces;
-  });
+  py::class_<SplineModel>(m, "SplineModel")
+      .def_readonly("loose_edges", &SplineModel::looseEdges)
+      .def_property_readonly("faces", [](const SplineModel& model) {
+        py::list faces;
+        for (const SplineFace& face : model.faces) {
+          py::dict entry;
+          entry["region"] = face.region;
+          entry["control_points"] = face.surface.poles.size();
+          entry["edge_tolerance"] = edgeTolerance(model, face);
+          faces.append(entry);
+        }
+        return faces;
+      });
   m.def("trim_model", &trimModel, py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"),
         py::arg("progress"), Released());
 }
