@@ -107,7 +107,7 @@ LoopTurning loopTurning(const SurfaceMesh& mesh, const Transport& transport) {
     for (const auto& loop : result.loops) {
       int sum = 0;
       walkBeside(mesh, loop, [&](HalfedgeHandle h) { sum += crossing[h.idx()]; });
-      effect.push_back(-sum);
+      effect.push_back(sum);
     }
   }
   return result;

@@ -11,15 +11,14 @@ namespace trimquad {
 ///
 /// A singularity-free field is settled up to deformation by how often each loop turns against it: full turns,
 /// +1 for the outer loop of a plane region, -1 for a hole in it, 0 for either end of a tube. The turns of all
-/// loops add up to the Euler characteristic. A generator is a function on halfedges, +1 or -1 where an edge
-/// of one path between two loops is crossed: adding a full turn to the field there changes the turns of
-/// loops, and of nothing else.
+/// loops add up to the Euler characteristic. A generator is a path between two loops: letting the angle of
+/// the field, in frames, jump by a full turn across it changes the turns of loops, and of nothing else.
 struct LoopTurning {
   std::vector<std::vector<HalfedgeHandle>> loops;  ///< as boundaryLoops
   std::vector<int> turns;                          ///< per loop, of the field with angle 0 and no generator
   /// Per generator (one less than loops): the halfedges that cross its path from its right to its left.
   std::vector<std::vector<HalfedgeHandle>> paths;
-  /// effect[generator][loop]: what one full turn added at the generator's crossings adds to the loop's turns.
+  /// effect[generator][loop]: what a jump of one full turn across the generator adds to the loop's turns.
   std::vector<std::vector<int>> effect;
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "support/sample_regions.h"
 #include "trimquad/base/error.h"
@@ -14,6 +15,58 @@ std::vector<int> sortedTurns(const CrossField& field) {
   auto turns = field.loopTurns;
   std::sort(turns.begin(), turns.end());
   return turns;
+}
+
+/// How often a loop turns against the field, from the directions alone: exterior angles less the field's
+/// smallest rotations from triangle to triangle.
+int turnsAgainst(const Region& r, const CrossField& field, const std::vector<HalfedgeHandle>& loop) {
+  const auto& mesh = r.mesh;
+  const auto against = [&](FaceHandle f, HalfedgeHandle h) {
+    const Eigen::Vector3d e = mesh.point(mesh.to_vertex_handle(h)) - mesh.point(mesh.from_vertex_handle(h)),
+                          d = field.direction[f.idx()];
+    return std::atan2(e.cross(d).dot(mesh.calc_face_normal(f)), e.dot(d));
+  };
+  double turn = 0;
+  for (const auto b : loop) {
+    turn += M_PI;
+    // Clockwise around the vertex that b leaves, from the inner halfedge that enters it on.
+    HalfedgeHandle h = mesh.next_halfedge_handle(mesh.opposite_halfedge_handle(b));
+    for (;;) {
+      turn -= cornerAngle(mesh, h);
+      const auto o = mesh.opposite_halfedge_handle(h);
+      if (mesh.is_boundary(o)) break;
+      turn -= std::remainder(against(mesh.face_handle(o), h) - against(mesh.face_handle(h), h), 2 * M_PI);
+      h = mesh.next_halfedge_handle(o);
+    }
+  }
+  EXPECT_NEAR(turn / (2 * M_PI), std::round(turn / (2 * M_PI)), 1e-6);
+  return int(std::lround(turn / (2 * M_PI)));
+}
+
+TEST(CrossField, turnsAroundEachLoopAsOftenAsItSays) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(0.2, 0.8);
+    std::vector<Eigen::Vector2d> holes;
+    for (unsigned k = 0; k < seed % 4; ++k) holes.emplace_back(place(random), place(random));
+    const auto inside = [&](double s, double t) {
+      for (const auto& hole : holes)
+        if (std::max(std::abs(s - hole.x()), std::abs(t - hole.y())) < 0.1) return false;
+      return true;
+    };
+    const bool closed = seed % 2 == 1;
+    auto soup =
+        closed ? sample::tube(30, 30, sample::elbow, inside) : sample::sheet(30, 30, sample::wavy, inside);
+    // Any numbering of the triangles must give the same answer.
+    std::shuffle(soup.triangles.begin(), soup.triangles.end(), random);
+    for (auto& t : soup.triangles) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
+    const Region r = sample::region(soup);
+    const CrossField field = crossField(r, Progress());
+    const auto loops = boundaryLoops(r.mesh);
+    for (size_t l = 0; l < loops.size(); ++l) EXPECT_EQ(turnsAgainst(r, field, loops[l]), field.loopTurns[l]);
+    EXPECT_EQ(std::count(field.loopTurns.begin(), field.loopTurns.end(), 0), closed ? 2 : 0);
+  }
 }
 
 TEST(CrossField, isUnitAndTangentialAndSmoothOnAWavySheet) {
