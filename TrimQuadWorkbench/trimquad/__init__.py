@@ -7,21 +7,10 @@
 Importable without a GUI. The compiled stages are loaded on first use, so that the FreeCAD add-on can start and say
 what is missing where they have not been built.
 """
+from .convert import Result, convert
 from .error import Error
 from .options import Options
+from .progress import Progress
 
 __all__ = ["Error", "Options", "Progress", "Result", "convert"]
 __version__ = "0.1.0"
-
-
-def __getattr__(name):
-    if name in ("convert", "Result"):
-        from . import convert as module
-
-        globals()["convert"], globals()["Result"] = module.convert, module.Result
-        return globals()[name]
-    if name == "Progress":
-        from .progress import Progress
-
-        return Progress
-    raise AttributeError(f"module 'trimquad' has no attribute '{name}'")

@@ -144,7 +144,7 @@ class _Conversion:
             return DONE
         first = failed[0]
         text = f"region '{first.name}', stage {first.error.stage}: {first.error}"
-        if len(failed) > 1:
+        if len(result.regions) > 1:
             text = f"{len(failed)} of {len(result.regions)} regions failed; {text}"
         if "report" in result.options.write and len(result.regions) > 1:
             text += f"; report.json in {self.parsed.out} lists all regions"

@@ -1,7 +1,6 @@
 """report.json: one object about a conversion, built from the values of the stages."""
 import os
 
-from . import __version__
 from .native import load
 
 STAGES = ("tessellate", "field", "seamless", "partition", "quantize", "reembed", "optimize", "extract", "fit", "write")
@@ -30,7 +29,7 @@ def report(result):
         "loose_edges": result.spline and result.spline.loose_edges,
         "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions), 6),
         "peak_memory_mb": _peak_memory_mb(),
-        "version": __version__,
+        "version": load().version,
         "opencascade": load().occ_version,
     }
 

@@ -1,4 +1,5 @@
 """The add-on in FreeCAD's window: freecad test_window.py COUNTS_FILE. Prints a line a test, writes "PASSED FAILED"."""
+import math
 import os
 import sys
 import tempfile
@@ -43,7 +44,9 @@ def wait_until(condition, seconds=60):
 def wavy_face(size=60.0, height=3.0):
     steps = [size * i / 6 for i in range(7)]
     surface = Part.BSplineSurface()
-    surface.interpolate([[V(x, y, height * ((i + j) % 3 - 1)) for j, y in enumerate(steps)] for i, x in enumerate(steps)])
+    surface.interpolate(
+        [[V(x, y, height * math.sin(4 * x / size) * math.cos(3 * y / size)) for y in steps] for x in steps]
+    )
     return surface.toShape()
 
 

@@ -53,15 +53,16 @@ def sheet():
     return wavy_face()
 
 
-def wavy_face(size=60.0, height=6.0):
+def wavy_face(size=60.0, height=2.0):
+    import math
+
     import FreeCAD
     import Part
 
     surface = Part.BSplineSurface()
     steps = [size * i / 6 for i in range(7)]
     surface.interpolate(
-        [[FreeCAD.Vector(x, y, height * ((i + j) % 3 - 1) * 0.5) for j, y in enumerate(steps)]
-         for i, x in enumerate(steps)]
+        [[FreeCAD.Vector(x, y, height * math.sin(4 * x / size) * math.cos(3 * y / size)) for y in steps] for x in steps]
     )
     return surface.toShape()
 
@@ -72,6 +73,7 @@ def document():
 
     document = FreeCAD.newDocument()
     document.UndoMode = 1
+    name = document.Name
     yield document
-    if document.Name in FreeCAD.listDocuments():
-        FreeCAD.closeDocument(document.Name)
+    if name in FreeCAD.listDocuments():
+        FreeCAD.closeDocument(name)

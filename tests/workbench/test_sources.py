@@ -27,7 +27,7 @@ def test_a_placed_shape_stays_where_it_is(sheet):
 
     sheet.Placement = FreeCAD.Placement(FreeCAD.Vector(100, 20, 3), FreeCAD.Rotation(FreeCAD.Vector(1, 1, 0), 40))
     made = trimquad.convert(sheet, trimquad.Options(**FEW)).shape
-    assert made.CenterOfMass.distanceToPoint(sheet.Faces[0].CenterOfMass) < 0.1
+    assert made.Faces[0].CenterOfMass.distanceToPoint(sheet.Faces[0].CenterOfMass) < 0.1
 
 
 def test_a_mesh_and_its_arrays(sheet):

@@ -9,7 +9,7 @@ except ImportError:  # FreeCAD 0.20
     from PySide import QtGui as QtWidgets
 
 from ..convert import convert
-from ..error import Error, cancelled
+from ..error import Error
 from ..features import conversion
 from ..progress import Progress
 
@@ -52,12 +52,11 @@ def run_with_window(source, options):
             # The last step would close the window.
             window.setValue(min(99, int(100 * thread.progress.fraction)))
         QtWidgets.QApplication.processEvents()
+    window.canceled.disconnect()  # closing says so too
     window.close()
     window.deleteLater()
     if thread.error is not None:
         raise thread.error
-    if thread.progress.cancelled:
-        raise cancelled()
     return thread.result
 
 
