@@ -67,6 +67,19 @@ TopoDS_Shape readIges(const std::string& content, const std::string& path) {
   return reader.OneShape();
 }
 
+/// Whether the table of shapes, which closes the file, is whole: as many entries as announced, each ending
+/// with an asterisk, then the root's number and location. OpenCASCADE reads on for ever where it is cut off.
+bool holdsAllShapes(const std::string& content) {
+  const std::string title = "\nTShapes ";
+  std::istringstream table(content.substr(content.find(title) + title.size()));
+  long announced = 0, found = 0;
+  if (!(table >> announced) || announced <= 0) return false;
+  std::string word;
+  while (found < announced && table >> word) found += word == "*";
+  std::string root, location;
+  return found == announced && table >> root >> location;
+}
+
 TopoDS_Shape readBRep(const std::string& content, const std::string& path) {
   // OpenCASCADE prints to the standard output when it meets anything else, so look first.
   const auto head = content.substr(0, 4096);
@@ -75,6 +88,7 @@ TopoDS_Shape readBRep(const std::string& content, const std::string& path) {
   for (const char* section : {"\nLocations ", "\nCurve2ds ", "\nCurves ", "\nPolygon3D ", "\nSurfaces ",
                               "\nTriangulations ", "\nTShapes "})
     demandEnding(content, section, "BREP", path);
+  if (!holdsAllShapes(content)) throw malformed("BREP", path);
   TopoDS_Shape shape;
   BRep_Builder builder;
   std::istringstream stream(content);
