@@ -100,10 +100,13 @@ std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh) {
     if (uses[s].size() != 2) continue;
     const int f = mesh.triangles[uses[s][0].first].face, g = mesh.triangles[uses[s][1].first].face;
     const bool opposite = runsForward(mesh, uses[s][0]) == runsForward(mesh, uses[s][1]);
-    if (!groups.join(f, g, opposite))
-      throw inputError("tessellate", "the surface has one side only (a Moebius strip); cut it open first",
-                       model.edges[mesh.sides[s].cadEdge.value()].name,
-                       mesh.vertices[mesh.sides[s].from].point);
+    if (groups.join(f, g, opposite)) continue;
+    const auto& side = mesh.sides[s];
+    if (!side.cadEdge)
+      throw inputError("tessellate", "the face cannot be triangulated: its wires cross; repair the shape",
+                       model.faces[f].name, mesh.vertices[side.from].point);
+    throw inputError("tessellate", "the surface has one side only (a Moebius strip); cut it open first",
+                     model.edges[*side.cadEdge].name, mesh.vertices[side.from].point);
   }
 
   // Signed sums per group, with every face as its group's first face has it.
