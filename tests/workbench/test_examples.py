@@ -2,6 +2,7 @@
 import json
 import re
 
+import numpy
 import pytest
 from conftest import EXAMPLES
 
@@ -16,6 +17,17 @@ def read(path):
     shape = Part.Shape()
     shape.read(str(path))
     return shape
+
+
+def measures(shape):
+    """Area, volume (about the origin) and centre of the surface, from fine triangles: OpenCASCADE's own integrals over
+    trimmed B-splines are off by a percent, its bounding boxes reach to the poles."""
+    points, triangles = shape.tessellate(0.02)
+    corners = numpy.array([tuple(p) for p in points])[numpy.array(triangles)]
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    areas = numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1) / 2
+    volume = numpy.einsum("ij,ij->", a, numpy.cross(b, c)) / 6
+    return areas.sum(), volume, (areas[:, None] * corners.mean(axis=1)).sum(axis=0) / areas.sum()
 
 
 def euler(text):
@@ -44,9 +56,9 @@ def test_the_model_is_valid_in_freecad_after_step_and_after_brep(converted, name
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_area_and_centre_are_those_of_the_input(converted, example_path, name):
     given, made = read(example_path(name)), read(converted(name)[1] / "nurbs.step")
-    assert made.Area == pytest.approx(given.Area, rel=2e-3)
-    distance = made.BoundBox.Center.distanceToPoint(given.BoundBox.Center)
-    assert distance < 0.02 * given.BoundBox.DiagonalLength
+    (area, _, centre), (made_area, _, made_centre) = measures(given), measures(made)
+    assert made_area == pytest.approx(area, rel=2e-3)
+    assert numpy.linalg.norm(made_centre - centre) < 2e-3 * given.BoundBox.DiagonalLength
 
 
 @pytest.mark.parametrize("name", ONE_FACE)
@@ -62,7 +74,7 @@ def test_a_solid_stays_a_solid_of_the_same_volume(converted, example_path):
     assert len(made.Solids) == 1
     assert len(made.Faces) == 4
     assert made.Solids[0].isClosed()
-    assert made.Volume == pytest.approx(given.Volume, rel=2e-3)
+    assert measures(made)[1] == pytest.approx(measures(given)[1], rel=2e-3)
 
 
 def test_the_hood_keeps_its_two_cut_outs(converted):
@@ -103,8 +115,6 @@ def test_the_number_of_quads_is_about_what_was_asked_for(converted, name):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_maps_give_every_triangle_a_positive_area(converted, name):
-    import numpy
-
     from trimquad.pictures import triangles_of_map
 
     _, out = converted(name)
