@@ -3,13 +3,13 @@
 
     PYTHONPATH=TrimQuadWorkbench:/usr/lib/freecad-python3/lib python3 examples/render_pictures.py
 
-Every picture comes from the program's own output. Needs matplotlib.
+Every picture comes from the program's own output. Needs matplotlib and PIL.
 """
 import os
 import sys
 import tempfile
 
-import matplotlib.image
+from PIL import Image, ImageChops
 
 import trimquad
 
@@ -17,15 +17,19 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 QUADS = {"hood": 500, "tube": 500, "sheet": 450, "box_with_fillets": 600}
 KINDS = ("map", "quads", "nurbs")
 MARGIN = 12  # pixels of white that stay around the drawing
+COLOURS = 96
+WIDTH = 640  # pixels, at most
 LARGEST = 150_000  # bytes
 
 
 def trimmed(picture):
-    """The picture without the white around its drawing."""
-    rows = (picture < 0.999).any(axis=(1, 2)).nonzero()[0]
-    columns = (picture < 0.999).any(axis=(0, 2)).nonzero()[0]
-    top, left = max(rows[0] - MARGIN, 0), max(columns[0] - MARGIN, 0)
-    return picture[top : rows[-1] + MARGIN, left : columns[-1] + MARGIN]
+    """The picture without the white around its drawing, in a small palette."""
+    white = Image.new("RGB", picture.size, "white")
+    left, top, right, bottom = ImageChops.difference(picture, white).getbbox()
+    box = max(left - MARGIN, 0), max(top - MARGIN, 0), right + MARGIN, bottom + MARGIN
+    picture = picture.crop(box)
+    picture.thumbnail((WIDTH, WIDTH))
+    return picture.quantize(COLOURS, dither=Image.Dither.NONE)
 
 
 def main():
@@ -39,9 +43,9 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             result.write(folder)
             for kind in KINDS:
-                picture = matplotlib.image.imread(os.path.join(folder, kind + ".png"))[:, :, :3]
+                picture = Image.open(os.path.join(folder, kind + ".png")).convert("RGB")
                 path = os.path.join(docs, f"{name}-{kind}.png")
-                matplotlib.image.imsave(path, trimmed(picture), metadata={"Software": None})
+                trimmed(picture).save(path, optimize=True)
                 assert os.path.getsize(path) < LARGEST, path
         print(f"{name}: {[r.quads.statistics['quads'] for r in result.regions]} quads")
 

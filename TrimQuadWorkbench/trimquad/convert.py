@@ -13,7 +13,7 @@ from .report import report
 from .source import Source
 
 # Stages keep to this part of the tolerance, so that what they add up to stays under it.
-FIT_MARGIN = 0.5
+FIT_MARGIN = 0.75
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 

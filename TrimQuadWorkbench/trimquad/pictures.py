@@ -11,8 +11,8 @@ QUAD_COLOUR = numpy.array([0.90, 0.91, 0.93])
 TRIMMED_COLOUR = numpy.array([0.98, 0.84, 0.60])
 FACE_COLOURS = numpy.array([[0.55, 0.68, 0.85], [0.93, 0.76, 0.52], [0.62, 0.80, 0.62], [0.85, 0.62, 0.66],
                             [0.74, 0.68, 0.86], [0.62, 0.80, 0.82]])
-# Each triangle is divided into this many parts a side where the checker changes inside it.
-CHECKER_DIVISION = 6
+# Triangles are divided so that the checker's borders look straight: at most so many parts a side, or in all.
+CHECKER_DIVISION, CHECKER_PARTS = 6, 250_000
 LIGHT = numpy.array([0.35, -0.45, 0.82])
 
 
@@ -57,7 +57,7 @@ def triangles_of_map(text):
 
 def _checker(corners, images):
     """Small triangles and their colours: squares of the plane alternate."""
-    n = CHECKER_DIVISION
+    n = max(1, min(CHECKER_DIVISION, int((CHECKER_PARTS / len(corners)) ** 0.5)))
     weights = []
     for i in range(n):
         for j in range(n - i):
@@ -109,6 +109,8 @@ def _save(path, surfaces, lines):
 
     triangles = numpy.concatenate([s[0] for s in surfaces])
     colours = numpy.concatenate([s[1] for s in surfaces])
+    # Large triangles have no one depth to be sorted by.
+    triangles, colours = _divided(triangles, colours, _extent(triangles) / 60)
     view = _view_axes(triangles)
     flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
     order = numpy.argsort(depth, kind="stable")
@@ -146,23 +148,39 @@ def _shade(triangles, view):
     return 0.62 + 0.42 * numpy.abs(normals @ light) - 0.08 * ((normals @ view[:, 2]) < 0)
 
 
-def _visible(segments, triangles, view, cells=400):
+def _visible(segments, triangles, view, cells=300):
     """Which segments no triangle hides: their middles against a depth raster of the triangles."""
-    flat, depth = triangles @ view[:, :2], triangles @ view[:, 2]
-    low = flat.reshape(-1, 2).min(axis=0)
-    size = max((flat.reshape(-1, 2).max(axis=0) - low).max() / cells, 1e-300)
+    low = (triangles @ view[:, :2]).reshape(-1, 2).min(axis=0)
+    extent = _extent(triangles)
+    size = extent / cells
+    small, _ = _divided(triangles, numpy.zeros((len(triangles), 0)), size)
+    points = numpy.concatenate([small.reshape(-1, 3), small.mean(axis=1)])
     raster = numpy.full((cells + 2, cells + 2), -numpy.inf)
-    for steps in _samples():
-        places = numpy.einsum("w,mwx->mx", steps, flat)
-        heights = depth @ steps
-        index = ((places - low) / size).astype(int)
-        numpy.maximum.at(raster, (index[:, 0], index[:, 1]), heights)
+    index = ((points @ view[:, :2] - low) / size).astype(int)
+    numpy.maximum.at(raster, (index[:, 0], index[:, 1]), points @ view[:, 2])
     middles = segments.mean(axis=1)
     index = numpy.clip(((middles @ view[:, :2] - low) / size).astype(int), 0, cells + 1)
-    extent = numpy.linalg.norm(triangles.reshape(-1, 3).max(axis=0) - triangles.reshape(-1, 3).min(axis=0))
-    return middles @ view[:, 2] > raster[index[:, 0], index[:, 1]] - 0.02 * extent
+    return middles @ view[:, 2] > raster[index[:, 0], index[:, 1]] - 0.015 * extent
 
 
-def _samples():
-    n = 4
-    return [numpy.array([n - i - j, i, j]) / n for i in range(n + 1) for j in range(n + 1 - i)]
+def _extent(triangles):
+    corners = triangles.reshape(-1, 3)
+    return max(numpy.linalg.norm(corners.max(axis=0) - corners.min(axis=0)), 1e-300)
+
+
+def _divided(triangles, colours, limit):
+    """The triangles, those with an edge over `limit` halved at their longest edge until there is none."""
+    done, done_colours = [], []
+    while len(triangles):
+        lengths = numpy.linalg.norm(triangles - numpy.roll(triangles, -1, axis=1), axis=2)
+        large = lengths.max(axis=1) > limit
+        done.append(triangles[~large])
+        done_colours.append(colours[~large])
+        first = lengths[large].argmax(axis=1)
+        turned = (first[:, None] + numpy.arange(3)) % 3
+        turned = numpy.take_along_axis(triangles[large], turned[:, :, None], axis=1)
+        a, b, c = turned[:, 0], turned[:, 1], turned[:, 2]
+        middle = (a + b) / 2
+        triangles = numpy.concatenate([numpy.stack([a, middle, c], axis=1), numpy.stack([middle, b, c], axis=1)])
+        colours = numpy.concatenate([colours[large], colours[large]])
+    return numpy.concatenate(done), numpy.concatenate(done_colours)
