@@ -56,16 +56,11 @@ class CadSurface : public TrueSurface {
   CadSurface(std::vector<Patch> patches, std::vector<Chart> charts, TriangleTree tree)
       : patches_(std::move(patches)), charts_(std::move(charts)), tree_(std::move(tree)) {}
 
-  Foot closest(const Vector3d& p) const override {
-    const Place place = locate(p);
-    const Patch& patch = *place.patch;
-    Vector3d normal = place.jet.su.cross(place.jet.sv);
-    const double length = normal.norm();
-    if (length > 1e-9 * (place.jet.su.squaredNorm() + place.jet.sv.squaredNorm()))
-      normal /= length;
-    else
-      normal = surfaceNormal(*patch.surface, place.uv, place.inside);
-    return {place.jet.s, patch.reversed ? Vector3d(-normal) : normal};
+  Foot closest(const Vector3d& p) const override { return footAt(locate(p, tree_.closest(p))); }
+
+  Foot closestFacing(const Vector3d& p, const Vector3d& facing) const override {
+    const auto hit = tree_.closestFacing(p, facing);
+    return footAt(locate(p, hit ? *hit : tree_.closest(p)));
   }
 
   Curvature curvature(const Vector3d& p) const override;
@@ -77,7 +72,19 @@ class CadSurface : public TrueSurface {
     Jet jet;
   };
 
-  Place locate(const Vector3d& p) const;
+  static Foot footAt(const Place& place) {
+    const Patch& patch = *place.patch;
+    Vector3d normal = place.jet.su.cross(place.jet.sv);
+    const double length = normal.norm();
+    if (length > 1e-9 * (place.jet.su.squaredNorm() + place.jet.sv.squaredNorm()))
+      normal /= length;
+    else
+      normal = surfaceNormal(*patch.surface, place.uv, place.inside);
+    return {place.jet.s, patch.reversed ? Vector3d(-normal) : normal};
+  }
+
+  /// \param hit  the nearest point on the triangles
+  Place locate(const Vector3d& p, const TriangleTree::Hit& hit) const;
 
   std::vector<Patch> patches_;
   std::vector<Chart> charts_;
@@ -101,8 +108,7 @@ Vector2d newtonStep(const Jet& jet, const Vector3d& r) {
   return solve(a + damping, b, c + damping);
 }
 
-CadSurface::Place CadSurface::locate(const Vector3d& p) const {
-  const auto hit = tree_.closest(p);
+CadSurface::Place CadSurface::locate(const Vector3d& p, const TriangleTree::Hit& hit) const {
   const Chart& chart = charts_[hit.triangle];
   const Patch& patch = patches_[chart.patch];
   const Vector2d inside = (chart.uv[0] + chart.uv[1] + chart.uv[2]) / 3;
@@ -137,7 +143,7 @@ CadSurface::Place CadSurface::locate(const Vector3d& p) const {
 }
 
 TrueSurface::Curvature CadSurface::curvature(const Vector3d& p) const {
-  const Place place = locate(p);
+  const Place place = locate(p, tree_.closest(p));
   const Jet& jet = place.jet;
   Vector3d normal = surfaceNormal(*place.patch->surface, place.uv, place.inside);
   if (place.patch->reversed) normal = -normal;

@@ -115,7 +115,8 @@ void TriangleTree::build(int first, int last, const std::vector<Vector3d>& cente
   nodes_[node].count = 0;
 }
 
-TriangleTree::Hit TriangleTree::closest(const Vector3d& p) const {
+template <typename Accept>
+std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, const Accept& accept) const {
   struct Entry {
     int node;
     double squaredDistance;
@@ -131,6 +132,7 @@ TriangleTree::Hit TriangleTree::closest(const Vector3d& p) const {
     for (int i = node.first; i < node.first + node.count; ++i) {
       const auto& t = triangles_[order_[i]];
       const Vector3d &a = points_[t[0]], &b = points_[t[1]], &c = points_[t[2]];
+      if (!accept(a, b, c)) continue;
       const Vector3d barycentric = closestOnTriangle(p, a, b, c);
       const Vector3d point = barycentric[0] * a + barycentric[1] * b + barycentric[2] * c;
       const double squared = (point - p).squaredNorm();
@@ -145,7 +147,19 @@ TriangleTree::Hit TriangleTree::closest(const Vector3d& p) const {
     stack[depth++] = far;
     stack[depth++] = near;
   }
+  if (best.triangle < 0) return std::nullopt;
   return best;
+}
+
+TriangleTree::Hit TriangleTree::closest(const Vector3d& p) const {
+  return *search(p, [](const Vector3d&, const Vector3d&, const Vector3d&) { return true; });
+}
+
+std::optional<TriangleTree::Hit> TriangleTree::closestFacing(const Vector3d& p,
+                                                             const Vector3d& facing) const {
+  return search(p, [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    return (b - a).cross(c - a).dot(facing) > 0;
+  });
 }
 
 }  // namespace trimquad

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace trimquad {
@@ -25,6 +26,10 @@ class TriangleTree {
   /// The closest point of all triangles to `p`.
   Hit closest(const Eigen::Vector3d& p) const;
 
+  /// The closest point on the triangles whose normals make less than a right angle with `facing`; none where
+  /// there are none. Tells the two sides of a thin part apart.
+  std::optional<Hit> closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d& facing) const;
+
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
 
@@ -36,6 +41,8 @@ class TriangleTree {
     std::int32_t count;  ///< leaf: how many triangles; inner: 0
   };
 
+  template <typename Accept>
+  std::optional<Hit> search(const Eigen::Vector3d& p, const Accept& accept) const;
   void build(int first, int last, const std::vector<Eigen::Vector3d>& centers);
 
   std::vector<Eigen::Vector3d> points_;

@@ -130,6 +130,11 @@ TrueSurface::Foot TriangleSurface::closest(const Vector3d& p) const {
   return {hit.point, normal(hit.triangle)};
 }
 
+TrueSurface::Foot TriangleSurface::closestFacing(const Vector3d& p, const Vector3d& facing) const {
+  const auto hit = tree_.closestFacing(p, facing);
+  return hit ? Foot{hit->point, normal(hit->triangle)} : closest(p);
+}
+
 TrueSurface::Curvature TriangleSurface::curvature(const Vector3d& p) const {
   const TriangleTree::Hit hit = tree_.closest(p);
   const auto& t = tree_.triangles()[hit.triangle];

@@ -17,6 +17,7 @@ class TriangleSurface : public TrueSurface {
   explicit TriangleSurface(const SurfaceMesh& mesh);
 
   Foot closest(const Eigen::Vector3d& p) const override;
+  Foot closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d& facing) const override;
   Curvature curvature(const Eigen::Vector3d& p) const override;
 
   const TriangleTree& tree() const { return tree_; }

@@ -10,10 +10,14 @@ class TrueSurface {
   virtual ~TrueSurface() = default;
 
   struct Foot {
-    Eigen::Vector3d point, normal;  ///< closest point, and the unit normal there, on the side of the triangles
+    Eigen::Vector3d point,
+        normal;  ///< closest point, and the unit normal there, on the side of the triangles
   };
   /// The point of the surface closest to `p` (model units), which lies near the surface.
   virtual Foot closest(const Eigen::Vector3d& p) const = 0;
+  /// The same among the points whose normal makes less than a right angle with `facing`, as far as there are
+  /// any: `p` may lie closer to the other side of a thin part.
+  virtual Foot closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d& facing) const = 0;
 
   struct Curvature {
     Eigen::Vector3d direction1, direction2;  ///< unit principal directions
@@ -23,7 +27,8 @@ class TrueSurface {
   virtual Curvature curvature(const Eigen::Vector3d& p) const = 0;
 };
 
-/// A curve on which a region ends: a CAD edge, or a piece of a mesh's boundary. Shared by all regions that end there.
+/// A curve on which a region ends: a CAD edge, or a piece of a mesh's boundary. Shared by all regions that
+/// end there.
 class TrueCurve {
  public:
   virtual ~TrueCurve() = default;

@@ -118,7 +118,7 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   const auto h = mesh.halfedge_handle(e, 0);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const Vector3d middle = 0.5 * (mesh.point(a) + mesh.point(b));
-  const auto foot = surface_.closest(middle);
+  const auto foot = surface_.closestFacing(middle, normal[a.idx()] + normal[b.idx()]);
   const Vector3d away = foot.point - middle;
   const bool between = away.norm() <= kOffMiddle * length(e) &&
                        foot.normal.dot(normal[a.idx()] + normal[b.idx()]) > 0 &&
@@ -149,7 +149,7 @@ VertexHandle WorkingMesh::splitBoundary(EdgeHandle e, double t, const Vector3d& 
 }
 
 void WorkingMesh::splitFace(FaceHandle f) {
-  const auto foot = surface_.closest(mesh.calc_face_centroid(f));
+  const auto foot = surface_.closestFacing(mesh.calc_face_centroid(f), mesh.calc_face_normal(f));
   mesh.split(f, addVertex(foot.point, foot.normal));
   edgeCurve.resize(mesh.n_edges());
 }
@@ -201,7 +201,7 @@ void WorkingMesh::smooth(VertexHandle v) {
   const Vector3d& n = normal[v.idx()];
   Vector3d step = kSmoothing * (middle / count - mesh.point(v));
   step -= n.dot(step) * n;
-  const auto foot = surface_.closest(mesh.point(v) + step);
+  const auto foot = surface_.closestFacing(mesh.point(v) + step, n);
   if (foot.normal.dot(n) <= 0 || (foot.point - mesh.point(v)).norm() > 2 * step.norm()) return;
   const double before = worstAround(v, mesh.point(v)), after = worstAround(v, foot.point);
   if (after < before && after < kGoodEnough) return;

@@ -51,7 +51,7 @@ SurfaceSamples::SurfaceSamples(const Region& region, const GridMap& map, const C
     s.point = mesh_.point(v);
     s.normal = normals[v.idx()].normalized();
     if (!region.surface) continue;
-    const auto foot = region.surface->closest(s.point);
+    const auto foot = region.surface->closestFacing(s.point, s.normal);
     s.normal = foot.normal;
     // Boundary vertices stay on the curve that the neighbouring region shares.
     if (!mesh_.is_boundary(v)) s.point = foot.point;
@@ -101,7 +101,7 @@ SurfaceSample SurfaceSamples::sample(HalfedgeHandle h, const Eigen::Vector3d& ba
   s.parameter = wrapped(s.parameter);
   s.normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
   if (region_.surface) {
-    const auto foot = region_.surface->closest(s.point);
+    const auto foot = region_.surface->closestFacing(s.point, s.normal);
     s.point = foot.point;
     s.normal = foot.normal;
   }

@@ -99,6 +99,7 @@ class GraphSurface : public TrueSurface {
     const Eigen::Vector3d f = height_(x, y);
     return {{x, y, f.x()}, Eigen::Vector3d(-f.y(), -f.z(), 1).normalized()};
   }
+  Foot closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d&) const override { return closest(p); }
   Curvature curvature(const Eigen::Vector3d&) const override { return {}; }
 
  private:
@@ -109,6 +110,7 @@ class SphereSurface : public TrueSurface {
  public:
   explicit SphereSurface(double radius) : radius_(radius) {}
   Foot closest(const Eigen::Vector3d& p) const override { return {radius_ * p.normalized(), p.normalized()}; }
+  Foot closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d&) const override { return closest(p); }
   Curvature curvature(const Eigen::Vector3d&) const override { return {}; }
 
  private:
