@@ -16,12 +16,19 @@ using Triangle = WeldedMesh::Triangle;
 
 constexpr std::array<double, 3> kSamples{1. / 6, 1. / 2, 5. / 6};  // along a side
 
-/// True normal at the fraction `s` of the triangle's side k; `along` false runs it backwards.
-Vector3d normalOnSide(const CadModel& model, const Triangle& triangle, int k, double s, bool along) {
+/// True normal at the fraction `s` of the triangle's side k, `reach` inside; `along` false runs the side
+/// backwards.
+Vector3d normalBesideSide(const CadModel& model, const WeldedMesh& mesh, const Triangle& triangle, int k,
+                          double s, bool along, double reach) {
   const Vector2d &a = triangle.uv[k], &b = triangle.uv[(k + 1) % 3];
   const Vector2d uv = along ? Vector2d((1 - s) * a + s * b) : Vector2d(s * a + (1 - s) * b);
-  const Vector2d inside = (a + b + triangle.uv[(k + 2) % 3]) / 3;
-  return surfaceNormal(*model.faces[triangle.face].surface, uv, inside);
+  const Vector2d &apex = triangle.uv[(k + 2) % 3], inside = (a + b + apex) / 3;
+  const Vector3d p = mesh.vertices[triangle.vertex[k]].point,
+                 q = mesh.vertices[triangle.vertex[(k + 1) % 3]].point,
+                 r = mesh.vertices[triangle.vertex[(k + 2) % 3]].point;
+  const double height = (q - p).cross(r - p).norm() / (q - p).norm();
+  const double share = height > 0 ? std::min(0.5, reach / height) : 0;
+  return surfaceNormal(*model.faces[triangle.face].surface, (1 - share) * uv + share * apex, inside);
 }
 
 double areaOf(const WeldedMesh& mesh, const Triangle& triangle) {
@@ -150,7 +157,7 @@ std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh) {
 }
 
 std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                           const std::vector<char>& reversed, double angle) {
+                           const std::vector<char>& reversed, double angle, double reach) {
   std::vector<double> sharp(model.edges.size(), 0), smooth(model.edges.size(), 0);
   std::vector<char> cut(model.edges.size(), 0), present(model.edges.size(), 0);
   for (size_t s = 0; s < uses.size(); ++s) {
@@ -167,7 +174,8 @@ std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const 
       std::array<Vector3d, 2> normal;
       for (int i = 0; i < 2; ++i) {
         const auto& [t, k] = uses[s][i];
-        normal[i] = normalOnSide(model, mesh.triangles[t], k, fraction, runsForward(mesh, uses[s][i]));
+        normal[i] = normalBesideSide(model, mesh, mesh.triangles[t], k, fraction,
+                                     runsForward(mesh, uses[s][i]), reach);
         if (reversed[mesh.triangles[t].face]) normal[i] = -normal[i];
       }
       if (normal[0].isZero() || normal[1].isZero()) continue;

@@ -21,9 +21,10 @@ SideUses sideUses(const CadModel& model, const WeldedMesh& mesh);
 std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh);
 
 /// Per CAD edge, whether regions end there: free edges, and edges where the angle between the true normals of
-/// their two faces exceeds `angle` (radians) on most of their length; without sharp chains that end inside a
-/// region and separate nothing. With an infinite angle only free edges count.
+/// their two faces, `reach` (model units) away from the edge, exceeds `angle` (radians) on most of their
+/// length: a rounding that turns within the tolerance is an edge for all that the result can show. Without
+/// sharp chains that end inside a region and separate nothing. With an infinite angle only free edges count.
 std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                           const std::vector<char>& reversed, double angle);
+                           const std::vector<char>& reversed, double angle, double reach);
 
 }  // namespace trimquad

@@ -19,6 +19,8 @@ namespace {
 /// tolerance; the bounds are shares of the diagonal.
 constexpr double kFinestDeflection = 2e-5, kCoarsestDeflection = 2e-4;
 constexpr std::array<double, 3> kDeflectionSteps{1, 5, 25};
+/// How far from an edge a rounding may reach that still makes it a sharp edge, in tolerances.
+constexpr double kSharpWithin = 0.3;
 
 void demandPositive(double value, const char* option) {
   if (!std::isfinite(value) || value <= 0)
@@ -33,7 +35,8 @@ Model cutIntoRegions(const Shape& shape, double deflection, const TessellateOpti
   const double angle = options.features == TessellateOptions::Features::Trim
                            ? options.featureAngle * std::numbers::pi / 180
                            : std::numeric_limits<double>::infinity();
-  return cutRegions(cad, mesh, uses, cutEdges(cad, mesh, uses, reversed, angle), reversed);
+  const auto cut = cutEdges(cad, mesh, uses, reversed, angle, kSharpWithin * options.tolerance);
+  return cutRegions(cad, mesh, uses, cut, reversed);
 }
 
 /// BRepMesh cannot triangulate some faces at one deflection that it can at another. Since the true surface is
