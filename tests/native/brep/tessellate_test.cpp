@@ -82,7 +82,9 @@ void expectValid(const Model& model) {
     for (const auto v : mesh.vertices()) {
       const Vector3d p = mesh.point(v);
       EXPECT_LT((region.surface->closest(p).point - p).norm(), 1e-9 * model.diagonal);
-      if (region.corner[v.idx()]) EXPECT_EQ(p, model.corners[region.corner[v.idx()]->index]);
+      if (region.corner[v.idx()]) {
+        EXPECT_EQ(p, model.corners[region.corner[v.idx()]->index]);
+      }
     }
     for (const auto f : mesh.faces()) {
       Vector3d normal = Vector3d::Zero();
