@@ -14,6 +14,10 @@ from .source import Source
 
 # Stages keep to this part of the tolerance, so that what they add up to stays under it.
 FIT_MARGIN = 0.75
+# A face that crosses itself beyond its trim, or in a bend that the tolerance left loose, is fitted again this many times,
+# each time to this part of the tolerance before.
+REFITS = 3
+REFIT_PART = 0.4
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 
@@ -29,6 +33,7 @@ class RegionResult:
         self.name = region.name
         self.region = region
         self.field = self.seamless = self.grid = self.quads = self.fitted = self.error = None
+        self.refits = 0
         self.seconds = {}
 
     @property
@@ -178,6 +183,33 @@ def _map_region(item, options, progress):
         item.error = system_error("memory", error)
 
 
+def _refit_faulty(result, progress):
+    """Fits regions again, more closely, whose faces OpenCASCADE finds at fault. Whether the model must be trimmed again."""
+    native = load()
+    changed = False
+    for face, entry in enumerate(result.spline.faces):
+        item = result.regions[entry["region"]]
+        faults = native.faults(result.native_shape.sub_shape([face + 1]))
+        if not faults:
+            continue
+        changed = True
+        item.refits += 1
+        tolerance = FIT_MARGIN * result.options.tolerance * REFIT_PART**item.refits
+        try:
+            if item.refits > REFITS:
+                raise stage_error("fit", f"the surface is at fault ({faults[0]}); use a smaller tolerance", item.name)
+            with progress.stage("fit", item.name) as native_progress:
+                item.fitted = native.fit_surface(
+                    item.region, item.grid, tolerance, result.options.degree, native_progress
+                )
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+            item.fitted = None
+            item.error = error
+    return changed
+
+
 def _trim(result, progress):
     """Trims and joins the fitted surfaces. A region that cannot be trimmed is left out and the others tried again."""
     native = load()
@@ -193,7 +225,8 @@ def _trim(result, progress):
                     native_progress,
                 )
                 result.native_shape = native.assemble(result.spline)
-            break
+            if not _refit_faulty(result, progress):
+                break
         except Error as error:
             if error.kind == "cancelled":
                 raise
@@ -202,6 +235,8 @@ def _trim(result, progress):
             for item in guilty or [r for r in result.regions if r.fitted is not None]:
                 item.fitted = None
                 item.error = error
+    if result.spline is None:
+        result.native_shape = None
     result.seconds["trim"] = time.monotonic() - started
     if progress.cancelled:
         raise cancelled()

@@ -10,16 +10,22 @@ namespace trimquad {
 /// Weight of the distance to the target beside symmetric Dirichlet energy.
 inline constexpr double kFollow = 1.0;
 
-/// One projected Newton step on `density` + follow * |J - 1|^2, with backtracking. Returns the relative
-/// decrease of the energy. \param keepInjective  stay within nine tenths of the step at which a first
-/// triangle collapses
+/// One projected Newton step, with the unknowns `held` where they are, on `density` + follow * |J - 1|^2,
+/// with backtracking. Returns the relative decrease of the energy. \param keepInjective  stay within nine
+/// tenths of the step at which a first triangle collapses
 template <typename Density>
 double newtonStep(const MapEnergy& energy, const SeamBasis& basis, const Density& density, double follow,
-                  bool keepInjective, SparseSolver& solver, Eigen::VectorXd& z) {
+                  bool keepInjective, SparseSolver& solver, Eigen::VectorXd& z,
+                  const std::vector<int>& held = {}) {
   const Eigen::VectorXd x = energy.coordinates(z);
   Eigen::VectorXd gradient;
   Eigen::SparseMatrix<double> hessian;
   energy.derivatives(x, density, follow, gradient, hessian);
+  const double stiffest = hessian.diagonal().maxCoeff();
+  for (const int i : held) {
+    gradient[i] = 0;
+    hessian.coeffRef(i, i) += 1e6 * stiffest;
+  }
   double ridge = 1e-10 * hessian.diagonal().mean();
   for (;;) {
     for (int i = 0; i < hessian.rows(); ++i) hessian.coeffRef(i, i) += ridge;

@@ -14,6 +14,11 @@ namespace {
 struct Scaffold {
   TriangleSoup soup;  // the region's triangles first; points are not used but for their number
   std::vector<Eigen::Vector2d> position;
+  std::vector<int> outermost;  ///< vertices of the last ring
+  /// The basis holds vertex 0 at the origin. That must be one of the outermost ring, which does not move
+  /// anyway, so the region's vertex 0 and the first of the ring have changed numbers.
+  int zero = 0;
+  int number(int vertex) const { return vertex == 0 ? zero : vertex == zero ? 0 : vertex; }
 };
 
 std::array<int, 3> corners(const SurfaceMesh& mesh, FaceHandle f) {
@@ -55,7 +60,13 @@ Scaffold scaffold(const SurfaceMesh& mesh, int outer, std::vector<Eigen::Vector2
       }
       ring = next;
     }
+    result.outermost = ring;
   }
+  result.zero = result.outermost.front();
+  for (auto& triangle : result.soup.triangles)
+    for (int& v : triangle) v = result.number(v);
+  for (int& v : result.outermost) v = result.number(v);
+  std::swap(position[0], position[result.zero]);
   result.position = std::move(position);
   for (const auto& p : result.position) result.soup.points.emplace_back(p.x(), p.y(), 0);
   return result;
@@ -64,7 +75,8 @@ Scaffold scaffold(const SurfaceMesh& mesh, int outer, std::vector<Eigen::Vector2
 }  // namespace
 
 Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
-                            const SeamBasis& basis, MapCounters& counters, const Progress& progress) {
+                            const SeamBasis& basis, double follow, MapCounters& counters,
+                            const Progress& progress) {
   TRIMQUAD_ASSERT(basis.branchCount() == 0);
   double area = 0;
   for (const auto& t : target) {
@@ -99,6 +111,17 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
   holdOrigin(x);
   Eigen::VectorXd z = extendedBasis.basis().restrict(x);
 
+  // The outermost ring stays convex, so that the whole is one to one as long as no triangle is turned over.
+  std::vector<char> isOutermost(extended.n_vertices(), 0);
+  for (const int v : frame.outermost) isOutermost[v] = 1;
+  std::vector<char> isHeld(extendedBasis.basis().variableCount(), 0);
+  for (const auto h : extended.halfedges())
+    if (!extended.is_boundary(h) && isOutermost[extended.from_vertex_handle(h).idx()])
+      for (int axis = 0; axis < 2; ++axis) isHeld[coordinate(h, axis)] = 1;
+  std::vector<int> held;
+  for (int i = 0; i < extendedBasis.basis().freeCount(); ++i)
+    if (isHeld[extendedBasis.basis().freeVariable(i)]) held.push_back(i);
+
   // The scaffold's target is its present shape, renewed every few steps, so that it yields but never folds.
   SparseSolver solver("seamless");
   const int regionFaces = int(mesh.n_faces());
@@ -118,7 +141,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
     }
     MapEnergy energy(extended, extendedTarget, extendedBasis);
     energy.setScaffold(regionFaces, 0);
-    const double regionEnergy = energy.value(x, symmetricDirichlet, kFollow);
+    const double regionEnergy = energy.value(x, symmetricDirichlet, follow);
     energy.setScaffold(regionFaces,
                        kScaffoldWeight * regionEnergy / (4.0 * double(extended.n_faces() - regionFaces)));
     stalled = regionEnergy > previous * (1 - 2e-3) ? stalled + 1 : 0;
@@ -128,7 +151,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
       throw stageError("seamless",
                        "a convex embedding of the region is too narrow for floating point; refine the mesh");
     for (int step = 0; step < kStepsPerRound; ++step) {
-      newtonStep(energy, extendedBasis, symmetricDirichlet, kFollow, true, solver, z);
+      newtonStep(energy, extendedBasis, symmetricDirichlet, follow, true, solver, z, held);
       ++counters.iterations;
       progress.report(0.5 + 0.5 * (round * kStepsPerRound + step) / (kRounds * kStepsPerRound));
     }
@@ -137,7 +160,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
   Eigen::VectorXd mine(basis.basis().variableCount());
   for (const auto f : mesh.faces()) {
     HalfedgeHandle h = mesh.halfedge_handle(f), e = extended.halfedge_handle(f);
-    while (extended.from_vertex_handle(e).idx() != mesh.from_vertex_handle(h).idx())
+    while (extended.from_vertex_handle(e).idx() != frame.number(mesh.from_vertex_handle(h).idx()))
       e = extended.next_halfedge_handle(e);
     for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h), e = extended.next_halfedge_handle(e))
       for (int axis = 0; axis < 2; ++axis)

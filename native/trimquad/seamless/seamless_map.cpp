@@ -4,6 +4,7 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/boundary_image.h"
+#include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
@@ -24,18 +25,43 @@ MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, double edg
   return target;
 }
 
-/// Whether the boundary's image, of a map in one chart, meets itself: then the map covers a part of the plane
-/// twice.
-bool overlaps(const Parametrization& map) {
+/// Whether the boundary's image meets itself: then the map covers a part of the plane (rolled up in the
+/// direction of a tube's period) twice.
+bool overlaps(const Parametrization& map, const SeamGraph& seams) {
+  std::optional<FixedVector> period;
+  for (const auto h : map.mesh.halfedges())
+    if (const auto& crossing = seams.crossing[h.idx()]; crossing && crossing->forward)
+      period = map.transition(h).translation;
+  const int turn = period && period->u == 0 ? 1 : 0;  // the test rolls the plane up in u
   std::vector<BoundarySegment> segments;
   for (const auto& loop : boundaryLoops(map.mesh)) {
     const int base = int(segments.size()), size = int(loop.size());
     for (int i = 0; i < size; ++i) {
       const auto inner = map.mesh.opposite_halfedge_handle(loop[size - 1 - i]);
-      segments.push_back({map.from(inner), map.to(inner), base + (i + 1) % size});
+      segments.push_back(
+          {rotated(map.from(inner), turn), rotated(map.to(inner), turn), base + (i + 1) % size});
     }
   }
-  return firstContact(segments, std::nullopt).has_value();
+  std::optional<Quanta> around;
+  if (period) around = std::abs(turn ? period->v : period->u);
+  return firstContact(segments, around).has_value();
+}
+
+/// The seams of a plane region, whatever the field: none. The outer loop is the field's, or the longer end of
+/// its tube.
+SeamGraph withoutSeams(const SurfaceMesh& mesh, const CrossField& field) {
+  SeamGraph seams;
+  seams.crossing.resize(mesh.n_halfedges());
+  const auto loops = boundaryLoops(mesh);
+  double longest = -1;
+  for (int l = 0; l < int(loops.size()); ++l) {
+    double length = 0;
+    for (const auto h : loops[l]) length += mesh.calc_edge_length(h);
+    if (field.loopTurns[l] < 0 || length <= longest) continue;
+    longest = length;
+    seams.outerLoop = l;
+  }
+  return seams;
 }
 
 }  // namespace
@@ -64,13 +90,17 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   const Eigen::VectorXd z =
       solveMap(mesh, seams, target, field.index, basis, "seamless", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
-  // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
-  if (seams.rotation.empty() && overlaps(map)) {
-    map.counters.scaffolded = true;
-    const Eigen::VectorXd apart = oneToOneMap(mesh, seams, target, basis, map.counters, progress);
-    static_cast<Parametrization&>(map) = exactMap(mesh, basis, apart, false);
-  }
   map.seams = seams;
+  // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
+  // A tube that is not becomes a plane region, whose map cannot follow the field.
+  if (overlaps(map, seams)) {
+    map.counters.scaffolded = true;
+    map.seams = withoutSeams(mesh, field);
+    const SeamBasis plane(mesh, map.seams, {});
+    const double follow = seams.rotation.empty() ? kFollow : 0.0;
+    const Eigen::VectorXd apart = oneToOneMap(mesh, map.seams, target, plane, follow, map.counters, progress);
+    static_cast<Parametrization&>(map) = exactMap(mesh, plane, apart, false);
+  }
   map.target = target;
   map.index = field.index;
   return map;

@@ -6,6 +6,7 @@
 
 #include "support/sample_regions.h"
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/boundary_image.h"
 
 namespace trimquad {
 namespace {
@@ -70,6 +71,24 @@ TEST(GridMap, domeBeyondTheEquatorUntangles) {
         sample::region(sample::sheet(30, 30, sample::dome(degrees / 180 * M_PI / std::sqrt(2.0)))), 0.1);
     verify(map, true);
   }
+}
+
+TEST(GridMap, spiralRampIsUnrolledWithoutCoveringThePlaneTwice) {
+  // Developed, the ramp turns by 1.5 full turns and lies over itself.
+  const Region r = sample::region(sample::sheet(90, 8, [](double s, double t) {
+    const double a = 3 * M_PI * s, radius = 2 - t;
+    return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), 0.1 * a);
+  }));
+  const SeamlessMap map = seamlessMap(r, crossField(r, Progress()), 0.1, Progress());
+  EXPECT_TRUE(map.counters.scaffolded);
+  verify(map, false);
+  std::vector<BoundarySegment> segments;
+  for (const auto& loop : boundaryLoops(map.mesh))
+    for (size_t i = 0; i < loop.size(); ++i) {
+      const auto inner = map.mesh.opposite_halfedge_handle(loop[loop.size() - 1 - i]);
+      segments.push_back({map.from(inner), map.to(inner), int((i + 1) % loop.size())});
+    }
+  EXPECT_FALSE(firstContact(segments, std::nullopt).has_value());
 }
 
 TEST(GridMap, roughRandomSurfacesAlwaysGetAValidMap) {
