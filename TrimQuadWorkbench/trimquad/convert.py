@@ -197,7 +197,8 @@ def _refit_faulty(result, progress):
         tolerance = FIT_MARGIN * result.options.tolerance * REFIT_PART**item.refits
         try:
             if item.refits > REFITS:
-                raise stage_error("fit", f"the surface is at fault ({faults[0]}); use a smaller tolerance", item.name)
+                advice = f"OpenCASCADE finds the fitted surface at fault ({faults[0]}); use a smaller tolerance"
+                raise Error("stage", "fit", advice, item.name)
             with progress.stage("fit", item.name) as native_progress:
                 item.fitted = native.fit_surface(
                     item.region, item.grid, tolerance, result.options.degree, native_progress

@@ -96,6 +96,8 @@ class Options:
         options = dataclasses.replace(self)
         if options.edge_length is None:
             options.quads = options.quads or DEFAULT_QUADS
+            if not area > 0:
+                raise input_error("read", "the faces have no area, or point against each other; repair the shape")
             options.edge_length = math.sqrt(area / options.quads)
         if options.edge_length > diagonal:
             raise _refused(

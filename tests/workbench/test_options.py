@@ -85,3 +85,9 @@ def test_an_edge_length_that_does_not_fit_the_part_says_what_it_would_give(lengt
     with pytest.raises(Error) as caught:
         Options(edge_length=length).resolved("cad", 1000.0, 50.0, 2)
     assert said in str(caught.value)
+
+
+def test_an_input_without_area_is_refused_in_one_line():
+    with pytest.raises(Error) as caught:
+        Options().resolved("cad", -1.0, 10.0, 1)
+    assert caught.value.kind == "input" and "no area" in str(caught.value)

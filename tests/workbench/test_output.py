@@ -140,3 +140,32 @@ def test_only_the_chosen_faces_are_converted(example_path):
     result = trimquad.convert(Source(box, ["Face1", "Face6"]), trimquad.Options(quads=100))
     assert len(result.regions) == 2
     assert result.shape.Area == pytest.approx(box.Face1.Area + box.Face6.Area, rel=1e-6)
+
+
+class _AlwaysAtFault:
+    """The compiled stages, with a check that finds every face at fault."""
+
+    def __init__(self, native):
+        self._native = native
+        self.checks = 0
+
+    def __getattr__(self, name):
+        return getattr(self._native, name)
+
+    def faults(self, shape):
+        self.checks += 1
+        return ["Face1: SelfIntersect"]
+
+
+def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeypatch):
+    import sys
+
+    module = sys.modules["trimquad.convert"]
+    native = _AlwaysAtFault(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert(sheet, trimquad.Options(quads=50))
+    (region,) = result.failed
+    assert native.checks == module.REFITS + 1
+    assert region.error.kind == "stage" and region.error.stage == "fit"
+    assert "SelfIntersect" in str(region.error)
+    assert region.quads is not None

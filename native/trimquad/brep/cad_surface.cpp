@@ -5,6 +5,7 @@
 #include <Standard_Failure.hxx>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "trimquad/brep/surface_normal.h"
 #include "trimquad/mesh/aabb_tree.h"
@@ -142,15 +143,12 @@ CadSurface::Place CadSurface::locate(const Vector3d& p, const TriangleTree::Hit&
   return best;
 }
 
-TrueSurface::Curvature CadSurface::curvature(const Vector3d& p) const {
-  const Place place = locate(p, tree_.closest(p));
-  const Jet& jet = place.jet;
-  Vector3d normal = surfaceNormal(*place.patch->surface, place.uv, place.inside);
-  if (place.patch->reversed) normal = -normal;
+/// Principal curvatures from derivatives and the normal; nothing where these do not span the tangent plane.
+std::optional<TrueSurface::Curvature> principal(const Jet& jet, const Vector3d& normal) {
   // In an orthonormal frame (x, y) of the tangent plane the shape operator is a symmetric matrix.
   Vector3d x = (jet.su.squaredNorm() >= jet.sv.squaredNorm() ? jet.su : jet.sv);
   x -= normal.dot(x) * normal;
-  if (x.norm() <= 0) x = normal.unitOrthogonal();
+  if (x.norm() <= 0) return {};
   x.normalize();
   const Vector3d y = normal.cross(x);
   Eigen::Matrix2d frame;  // columns: su and sv in (x, y)
@@ -158,7 +156,7 @@ TrueSurface::Curvature CadSurface::curvature(const Vector3d& p) const {
   Eigen::Matrix2d second;
   second << normal.dot(jet.suu), normal.dot(jet.suv), normal.dot(jet.suv), normal.dot(jet.svv);
   const double scale = jet.su.squaredNorm() + jet.sv.squaredNorm();
-  if (std::abs(frame.determinant()) <= 1e-9 * scale) return {x, y, 0, 0};
+  if (std::abs(frame.determinant()) <= 1e-6 * scale) return {};
   const Eigen::Matrix2d inverse = frame.inverse();
   // Curvature is positive where the surface bends away from its outer side, as a sphere does.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(
@@ -166,7 +164,23 @@ TrueSurface::Curvature CadSurface::curvature(const Vector3d& p) const {
   const auto inSpace = [&](int k) -> Vector3d {
     return eigen.eigenvectors()(0, k) * x + eigen.eigenvectors()(1, k) * y;
   };
-  return {inSpace(0), inSpace(1), eigen.eigenvalues()[0], eigen.eigenvalues()[1]};
+  return TrueSurface::Curvature{inSpace(0), inSpace(1), eigen.eigenvalues()[0], eigen.eigenvalues()[1]};
+}
+
+TrueSurface::Curvature CadSurface::curvature(const Vector3d& p) const {
+  const Place place = locate(p, tree_.closest(p));
+  // At a pole, or along an edge at which the parametrization stands still, curvature is that of a point
+  // nearby.
+  Vector3d normal;
+  for (const double step : {0.0, 0.02, 0.2, 1.0}) {
+    const Vector2d uv = place.uv + step * (place.inside - place.uv);
+    normal = surfaceNormal(*place.patch->surface, uv, place.inside);
+    if (place.patch->reversed) normal = -normal;
+    if (const auto found = principal(step == 0 ? place.jet : jetOf(*place.patch->surface, uv), normal))
+      return *found;
+  }
+  const Vector3d x = normal.unitOrthogonal();
+  return {x, normal.cross(x), 0, 0};
 }
 
 }  // namespace

@@ -31,10 +31,10 @@ class UnionFind {
 class RegionCutter {
  public:
   RegionCutter(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-               const std::vector<char>& cut, const std::vector<char>& reversed)
-      : cad_(cad), mesh_(mesh), uses_(uses), cut_(cut), reversed_(reversed) {}
+               const FeatureEdges& features, const std::vector<char>& reversed)
+      : cad_(cad), mesh_(mesh), uses_(uses), features_(features), reversed_(reversed) {}
 
-  Model run() {
+  CutModel run() {
     makeCurves();
     const auto groups = triangleGroups();
     for (const auto& triangles : groups) makeRegion(triangles);
@@ -43,13 +43,13 @@ class RegionCutter {
     for (const auto& triangle : mesh_.triangles)
       for (const int v : triangle.vertex) box.extend(mesh_.vertices[v].point);
     model_.diagonal = box.diagonal().norm();
-    return std::move(model_);
+    return {std::move(model_), std::move(creases_)};
   }
 
  private:
   bool isCut(int side) const {
     const auto& edge = mesh_.sides[side].cadEdge;
-    return edge && cut_[*edge];
+    return edge && features_.cut[*edge];
   }
 
   void makeCurves() {
@@ -133,6 +133,7 @@ class RegionCutter {
   void makeRegion(const std::vector<int>& triangles) {
     Region region;
     region.name = "region " + std::to_string(model_.regions.size());
+    Creases creases;
     std::vector<int> origin;
     region.mesh = buildSurfaceMesh(soupOf(triangles, origin));
     region.surface = cadSurface(cad_, mesh_, triangles, reversed_);
@@ -144,9 +145,13 @@ class RegionCutter {
       HalfedgeHandle h = region.mesh.halfedge_handle(FaceHandle(int(i)));
       while (origin[region.mesh.from_vertex_handle(h).idx()] != triangle.vertex[0])
         h = region.mesh.next_halfedge_handle(h);
-      for (int k = 0; k < 3; ++k, h = region.mesh.next_halfedge_handle(h))
+      for (int k = 0; k < 3; ++k, h = region.mesh.next_halfedge_handle(h)) {
         if (isCut(triangle.side[k])) putOnCurve(region, h, triangle.vertex[k], mesh_.sides[triangle.side[k]]);
+        const auto [a, b] = std::minmax({region.mesh.from_vertex_handle(h), region.mesh.to_vertex_handle(h)});
+        if (features_.crease[triangle.side[k]]) creases.insert({a, b});
+      }
     }
+    creases_.push_back(std::move(creases));
     model_.regions.push_back(std::move(region));
   }
 
@@ -191,18 +196,19 @@ class RegionCutter {
   const CadModel& cad_;
   const WeldedMesh& mesh_;
   const SideUses& uses_;
-  const std::vector<char>& cut_;
+  const FeatureEdges& features_;
   const std::vector<char>& reversed_;
   std::vector<std::optional<CurveId>> curveOfEdge_;
   std::vector<std::optional<CornerId>> cornerOfVertex_;
   Model model_;
+  std::vector<Creases> creases_;
 };
 
 }  // namespace
 
-Model cutRegions(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-                 const std::vector<char>& cut, const std::vector<char>& reversed) {
-  return RegionCutter(cad, mesh, uses, cut, reversed).run();
+CutModel cutRegions(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
+                    const FeatureEdges& features, const std::vector<char>& reversed) {
+  return RegionCutter(cad, mesh, uses, features, reversed).run();
 }
 
 }  // namespace trimquad

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "trimquad/mesh/region.h"
+#include "trimquad/mesh/remesh.h"
 
 // This order: OpenCASCADE's macros must not reach the mesh headers.
 #include "trimquad/brep/cad_model.h"
@@ -11,9 +11,14 @@
 
 namespace trimquad {
 
-/// The welded mesh cut open along the edges in `cut` (per CAD edge), with its curves, corners and shells. The
-/// meshes are BRepMesh's triangles; boundary vertices lie on their curves.
-Model cutRegions(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-                 const std::vector<char>& cut, const std::vector<char>& reversed);
+struct CutModel {
+  Model model;
+  std::vector<Creases> creases;  ///< by region
+};
+
+/// The welded mesh cut open along the feature edges, with its curves, corners and shells. The meshes are
+/// BRepMesh's triangles; boundary vertices lie on their curves.
+CutModel cutRegions(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
+                    const FeatureEdges& features, const std::vector<char>& reversed);
 
 }  // namespace trimquad

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "trimquad/base/error.h"
 #include "trimquad/brep/surface_normal.h"
@@ -156,31 +157,33 @@ std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh) {
   return reversed;
 }
 
-std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                           const std::vector<char>& reversed, double angle, double reach) {
+FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
+                          const std::vector<char>& reversed, double angle, double reach) {
   std::vector<double> sharp(model.edges.size(), 0), smooth(model.edges.size(), 0);
-  std::vector<char> cut(model.edges.size(), 0), present(model.edges.size(), 0);
+  std::vector<char> cut(model.edges.size(), 0), crease(mesh.sides.size(), 0);
   for (size_t s = 0; s < uses.size(); ++s) {
     const auto& side = mesh.sides[s];
     if (!side.cadEdge || uses[s].empty()) continue;
-    present[*side.cadEdge] = 1;
     if (uses[s].size() == 1) {
       cut[*side.cadEdge] = 1;
       continue;
     }
     if (std::isinf(angle)) continue;
     const double length = (mesh.vertices[side.to].point - mesh.vertices[side.from].point).norm();
-    for (const double fraction : kSamples) {
+    const auto turnAt = [&](double fraction, double distance) -> std::optional<double> {
       std::array<Vector3d, 2> normal;
       for (int i = 0; i < 2; ++i) {
         const auto& [t, k] = uses[s][i];
         normal[i] = normalBesideSide(model, mesh, mesh.triangles[t], k, fraction,
-                                     runsForward(mesh, uses[s][i]), reach);
+                                     runsForward(mesh, uses[s][i]), distance);
         if (reversed[mesh.triangles[t].face]) normal[i] = -normal[i];
       }
-      if (normal[0].isZero() || normal[1].isZero()) continue;
-      const double turn = std::atan2(normal[0].cross(normal[1]).norm(), normal[0].dot(normal[1]));
-      (turn > angle ? sharp : smooth)[*side.cadEdge] += length;
+      if (normal[0].isZero() || normal[1].isZero()) return {};
+      return std::atan2(normal[0].cross(normal[1]).norm(), normal[0].dot(normal[1]));
+    };
+    for (const double fraction : kSamples) {
+      if (const auto turn = turnAt(fraction, 0)) (*turn > angle ? sharp : smooth)[*side.cadEdge] += length;
+      if (turnAt(fraction, reach).value_or(0) > angle) crease[s] = 1;
     }
   }
   for (size_t e = 0; e < cut.size(); ++e)
@@ -206,7 +209,9 @@ std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const 
       changed = true;
     }
   }
-  return cut;
+  for (size_t s = 0; s < crease.size(); ++s)
+    if (crease[s] && cut[*mesh.sides[s].cadEdge]) crease[s] = 0;
+  return {std::move(cut), std::move(crease)};
 }
 
 }  // namespace trimquad

@@ -20,11 +20,18 @@ SideUses sideUses(const CadModel& model, const WeldedMesh& mesh);
 /// Throws Error(Input) where that is impossible (a Moebius strip).
 std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh);
 
-/// Per CAD edge, whether regions end there: free edges, and edges where the angle between the true normals of
-/// their two faces, `reach` (model units) away from the edge, exceeds `angle` (radians) on most of their
-/// length: a rounding that turns within the tolerance is an edge for all that the result can show. Without
-/// sharp chains that end inside a region and separate nothing. With an infinite angle only free edges count.
-std::vector<char> cutEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                           const std::vector<char>& reversed, double angle, double reach);
+struct FeatureEdges {
+  /// By CAD edge: whether regions end there. Free edges, and edges where the angle between the true normals
+  /// of their two faces exceeds `angle` on most of their length; without sharp chains that end inside a
+  /// region and separate nothing.
+  std::vector<char> cut;
+  /// By side of the welded mesh: whether the surface turns by more than `angle` within `reach` (model units)
+  /// to both sides of it, on an edge that is not cut. Triangles of about that size must not reach across.
+  std::vector<char> crease;
+};
+
+/// \param angle  radians; with an infinite one only free edges count
+FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
+                          const std::vector<char>& reversed, double angle, double reach);
 
 }  // namespace trimquad

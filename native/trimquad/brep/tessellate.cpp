@@ -19,15 +19,13 @@ namespace {
 /// tolerance; the bounds are shares of the diagonal.
 constexpr double kFinestDeflection = 2e-5, kCoarsestDeflection = 2e-4;
 constexpr std::array<double, 3> kDeflectionSteps{1, 5, 25};
-/// How far from an edge a rounding may reach that still makes it a sharp edge, in tolerances.
-constexpr double kSharpWithin = 0.3;
 
 void demandPositive(double value, const char* option) {
   if (!std::isfinite(value) || value <= 0)
     throw inputError("tessellate", std::string(option) + " must be a positive number");
 }
 
-Model cutIntoRegions(const Shape& shape, double deflection, const TessellateOptions& options) {
+CutModel cutIntoRegions(const Shape& shape, double deflection, const TessellateOptions& options) {
   const CadModel cad = cadModel(shape);
   WeldedMesh mesh = weldedMesh(cad, deflection);
   const auto reversed = orientFaces(cad, mesh);
@@ -35,15 +33,15 @@ Model cutIntoRegions(const Shape& shape, double deflection, const TessellateOpti
   const double angle = options.features == TessellateOptions::Features::Trim
                            ? options.featureAngle * std::numbers::pi / 180
                            : std::numeric_limits<double>::infinity();
-  const auto cut = cutEdges(cad, mesh, uses, reversed, angle, kSharpWithin * options.tolerance);
-  return cutRegions(cad, mesh, uses, cut, reversed);
+  const auto features = featureEdges(cad, mesh, uses, reversed, angle, kShortestEdge * options.edgeLength);
+  return cutRegions(cad, mesh, uses, features, reversed);
 }
 
 /// BRepMesh cannot triangulate some faces at one deflection that it can at another. Since the true surface is
 /// reached by Newton's method from any of them, coarser ones are tried before the complaint about the finest
 /// is passed on.
-Model regionsOf(const Shape& shape, double deflection, const TessellateOptions& options,
-                const Progress& progress) {
+CutModel regionsOf(const Shape& shape, double deflection, const TessellateOptions& options,
+                   const Progress& progress) {
   std::optional<Error> complaint;
   for (const double coarser : kDeflectionSteps) {
     progress.check();
@@ -68,11 +66,12 @@ Model tessellate(const Shape& shape, const TessellateOptions& options, const Pro
     const double diagonal = shape.diagonal();
     const double deflection = std::clamp(std::min(options.tolerance, 0.1 * options.edgeLength),
                                          kFinestDeflection * diagonal, kCoarsestDeflection * diagonal);
-    Model model = regionsOf(shape, deflection, options, progress);
+    auto [model, creases] = regionsOf(shape, deflection, options, progress);
     const RemeshOptions wanted{options.edgeLength, options.tolerance};
     const auto division = divideCurves(model, wanted);
-    for (Region& region : model.regions) remesh(region, model, division, wanted, progress);
-    return model;
+    for (size_t r = 0; r < model.regions.size(); ++r)
+      remesh(model.regions[r], model, division, creases[r], wanted, progress);
+    return std::move(model);
   });
 }
 

@@ -185,7 +185,7 @@ void collapseShort(WorkingMesh& work) {
     for (const int side : {0, 1}) {
       const auto h = work.mesh.halfedge_handle(e, side);
       const auto v = work.mesh.from_vertex_handle(h), to = work.mesh.to_vertex_handle(h);
-      if (work.mesh.is_boundary(v) || makesChord(work, v, to) || makesLongEdge(work, v, to)) continue;
+      if (work.isHeld(v) || makesChord(work, v, to) || makesLongEdge(work, v, to)) continue;
       const auto after = work.qualityAfterCollapse(h);
       if (!after || *after < std::min(kUsable, work.worstAround(v, work.mesh.point(v)))) continue;
       if (*after > quality) best = h, quality = *after;
@@ -205,7 +205,7 @@ void collapseBad(WorkingMesh& work) {
       for (const HalfedgeHandle h :
            {HalfedgeHandle(*side), HalfedgeHandle(work.mesh.opposite_halfedge_handle(*side))}) {
         const auto v = work.mesh.from_vertex_handle(h), to = work.mesh.to_vertex_handle(h);
-        if (work.mesh.is_boundary(v) || makesChord(work, v, to)) continue;
+        if (work.isHeld(v) || makesChord(work, v, to)) continue;
         if (const auto after = work.qualityAfterCollapse(h); after && *after > quality)
           best = h, quality = *after;
       }
@@ -216,7 +216,7 @@ void collapseBad(WorkingMesh& work) {
 void smoothAll(WorkingMesh& work) {
   for (int i = 0; i < kSmoothings; ++i)
     for (const auto v : work.mesh.vertices())
-      if (!work.mesh.is_boundary(v)) work.smooth(v);
+      if (!work.isHeld(v)) work.smooth(v);
 }
 
 /// Every triangle gets an inner vertex.
@@ -237,8 +237,8 @@ void splitChords(WorkingMesh& work) {
 }  // namespace
 
 void remesh(Region& region, const Model& model, const std::vector<std::vector<double>>& division,
-            const RemeshOptions& options, const Progress& progress) {
-  WorkingMesh work(region, options);
+            const Creases& creases, const RemeshOptions& options, const Progress& progress) {
+  WorkingMesh work(region, creases, options);
   insertDivision(work, model, division);
   flipAll(work);
   int unwanted = removeUnwanted(work, false);

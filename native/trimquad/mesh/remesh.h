@@ -16,7 +16,8 @@ namespace trimquad {
 /// true surface; no triangle is degenerate; no inner edge joins two boundary vertices. Throws Error(Stage,
 /// "tessellate") where the boundary cannot be given the wanted vertices. Source: M. Botsch and L. Kobbelt, A
 /// Remeshing Approach to Multiresolution Modeling, SGP 2004. \param division see divideCurves
+/// \param creases stay edges, or become chains of edges
 void remesh(Region& region, const Model& model, const std::vector<std::vector<double>>& division,
-            const RemeshOptions& options, const Progress& progress);
+            const Creases& creases, const RemeshOptions& options, const Progress& progress);
 
 }  // namespace trimquad

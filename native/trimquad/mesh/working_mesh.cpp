@@ -18,16 +18,19 @@ constexpr double kGoodEnough = 0.25;  ///< quality down to which smoothing may g
 
 }  // namespace
 
-WorkingMesh::WorkingMesh(const Region& region, const RemeshOptions& options)
+WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const RemeshOptions& options)
     : mesh(region.mesh),
       parameter(region.curveParameter),
       corner(region.corner),
       fixed(mesh.n_vertices(), 0),
       edgeCurve(region.edgeCurve),
       surface_(*region.surface),
-      options_(options) {
+      options_(options),
+      creases_(creases),
+      onCrease_(mesh.n_vertices(), 0) {
+  for (const auto& [a, b] : creases) onCrease_[a.idx()] = onCrease_[b.idx()] = 1;
   for (const auto v : mesh.vertices()) {
-    normal.push_back(normalOnSheet(v));
+    normal.push_back(onCrease_[v.idx()] ? Vector3d(0, 0, 0) : normalOnSheet(v));
     curvatureSize.push_back(sizeAt(mesh.point(v)));
     if (corner[v.idx()]) fixed[v.idx()] = 1;
   }
@@ -98,6 +101,7 @@ VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfa
   parameter.push_back(0);
   corner.emplace_back();
   fixed.push_back(0);
+  onCrease_.push_back(0);
   return mesh.add_vertex(point);
 }
 
@@ -118,10 +122,21 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   const auto h = mesh.halfedge_handle(e, 0);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const Vector3d middle = 0.5 * (mesh.point(a) + mesh.point(b));
+  if (isCrease(a, b)) {
+    const auto v = addVertex(surface_.closest(middle).point, Vector3d(0, 0, 0));
+    mesh.split(e, v);
+    edgeCurve.resize(mesh.n_edges());
+    onCrease_[v.idx()] = 1;
+    creases_.erase(ordered(a, b));
+    creases_.insert(ordered(a, v));
+    creases_.insert(ordered(v, b));
+    return true;
+  }
   const auto foot = surface_.closestFacing(middle, normal[a.idx()] + normal[b.idx()]);
   const Vector3d away = foot.point - middle;
+  const Vector3d facing = normal[a.idx()] + normal[b.idx()];
   const bool between = away.norm() <= kOffMiddle * length(e) &&
-                       foot.normal.dot(normal[a.idx()] + normal[b.idx()]) > 0 &&
+                       (facing.isZero() || foot.normal.dot(facing) > 0) &&
                        splitQuality(h, foot.point, foot.normal) >
                            kSplitLoss * std::min(quality(mesh.face_handle(h)),
                                                  quality(mesh.face_handle(mesh.opposite_halfedge_handle(h))));
@@ -182,7 +197,7 @@ bool WorkingMesh::flipIfBetter(EdgeHandle e) {
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const auto c = mesh.to_vertex_handle(mesh.next_halfedge_handle(h)),
              d = mesh.to_vertex_handle(mesh.next_halfedge_handle(o));
-  if (mesh.is_boundary(c) && mesh.is_boundary(d)) return false;
+  if ((mesh.is_boundary(c) && mesh.is_boundary(d)) || isCrease(a, b)) return false;
   const double before = std::min(quality(mesh.face_handle(h)), quality(mesh.face_handle(o)));
   if (before > 0.99) return false;
   const Vector3d base = normal[c.idx()] + normal[d.idx()];

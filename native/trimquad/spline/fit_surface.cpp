@@ -158,6 +158,12 @@ std::string shortNumber(double x) {
 
 Error unreachable(const Region& region, double tolerance, double reached, int poles,
                   const Eigen::Vector3d& where) {
+  if (reached <= tolerance)
+    return stageError("fit",
+                      "the surface folds over wherever it keeps the tolerance " + shortNumber(tolerance) +
+                          " (" + std::to_string(poles) +
+                          " poles); use a smaller edge length, or cut the region there",
+                      region.name, where);
   return stageError("fit",
                     "the tolerance " + shortNumber(tolerance) + " cannot be met, the surface comes within " +
                         shortNumber(reached) + " with " + std::to_string(poles) +

@@ -224,6 +224,25 @@ TEST(Tessellate, reversedAndMovedSolidsPointOutward) {
   EXPECT_GT(signedVolume(model), 6);
 }
 
+TEST(Tessellate, trianglesDoNotReachAcrossARoundingSmallerThanThemselves) {
+  constexpr double radius = 0.02;
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(2, 2, 1).Shape();
+  BRepFilletAPI_MakeFillet fillet(box);
+  for (TopExp_Explorer edge(box, TopAbs_EDGE); edge.More(); edge.Next()) {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Current()));
+    if (std::abs(curve.Line().Direction().Z()) > 0.5) fillet.Add(radius, TopoDS::Edge(edge.Current()));
+  }
+  const Model model = tessellated(fillet.Shape(), 0.3, 0.01);
+  ASSERT_EQ(model.regions.size(), 3u);
+  // The walls are flat up to the rounding: a triangle that reached across would lie inside the box.
+  for (const auto& region : model.regions)
+    for (const auto f : region.mesh.faces()) {
+      const Vector3d c = region.mesh.calc_face_centroid(f);
+      const double inside = std::min({c.x(), 2 - c.x(), c.y(), 2 - c.y(), c.z(), 1 - c.z()});
+      EXPECT_LT(inside, 2 * radius);
+    }
+}
+
 TEST(Tessellate, facesThatOnlyTouchAreSewn) {
   TopoDS_Compound faces;
   BRep_Builder builder;
