@@ -232,7 +232,9 @@ def _trim(result, progress):
             if error.kind == "cancelled":
                 raise
             result.spline = None
-            guilty = [r for r in result.regions if r.fitted is not None and r.name == error.where]
+            # `where` is the region's name, or the name and an edge of it.
+            name = error.where.split(",")[0]
+            guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
             for item in guilty or [r for r in result.regions if r.fitted is not None]:
                 item.fitted = None
                 item.error = error

@@ -210,6 +210,21 @@ double rotationAlongBoundary(const SurfaceMesh& mesh, const Transport& transport
   return std::arg(sum) / 4;
 }
 
+/// Directions in a triangle need one.
+void requireArea(const SurfaceMesh& mesh) {
+  for (const auto f : mesh.faces()) {
+    double longest = 0;
+    for (const auto h : mesh.fh_range(f)) longest = std::max(longest, mesh.calc_edge_sqr_length(h));
+    const auto h = mesh.halfedge_handle(f);
+    const Eigen::Vector3d a = mesh.calc_edge_vector(h),
+                          b = mesh.calc_edge_vector(mesh.next_halfedge_handle(h));
+    if (!(a.cross(b).norm() > 1e-10 * longest))
+      throw stageError("field",
+                       "a triangle has no area; use a smaller edge length, or repair the shape there",
+                       "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
+  }
+}
+
 void requireSingularityFree(const SurfaceMesh& mesh) {
   const auto loops = boundaryLoops(mesh);
   const int genus2 = 2 - eulerCharacteristic(mesh) - int(loops.size());
@@ -230,6 +245,7 @@ void requireSingularityFree(const SurfaceMesh& mesh) {
 CrossField crossField(const Region& region, const Progress& progress) {
   const auto& mesh = region.mesh;
   requireSingularityFree(mesh);
+  requireArea(mesh);
   const Transport frames = transport(mesh);
   const LoopTurning turning = loopTurning(mesh, frames);
   progress.report(0.2);
