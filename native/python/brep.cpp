@@ -43,8 +43,8 @@ void bindBrep(py::module_& m) {
   m.def("tessellate", &tessellateShape, py::arg("shape"), py::kw_only(), py::arg("edge_length"),
         py::arg("tolerance"), py::arg("feature_angle"), py::arg("features"), py::arg("progress"), Released());
   m.def("assemble", &assemble, py::arg("spline"), Released());
-  m.def("faults", &faults, py::arg("shape"), Released(),
-        "what BRepCheck and the argument analysis of booleans find wrong, a line each");
+  m.def("face_faults", &faceFaults, py::arg("spline"), Released(),
+        "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone");
   m.def("write_step", &writeStep, py::arg("shape"), py::arg("path"), Released());
   m.def("write_brep", &writeBrep, py::arg("shape"), py::arg("path"), Released());
 }

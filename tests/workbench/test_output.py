@@ -152,9 +152,9 @@ class _AlwaysAtFault:
     def __getattr__(self, name):
         return getattr(self._native, name)
 
-    def faults(self, shape):
+    def face_faults(self, spline):
         self.checks += 1
-        return ["Face1: SelfIntersect"]
+        return [["Face1: SelfIntersect"]]
 
 
 def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeypatch):

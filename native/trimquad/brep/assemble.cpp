@@ -115,6 +115,8 @@ class Assembly {
     return compound;
   }
 
+  const std::vector<TopoDS_Face>& faces() const { return faces_; }
+
  private:
   void addEdge(const SplineEdge& edge) {
     const auto curve = toOcct(edge.curve);
@@ -176,6 +178,15 @@ class Assembly {
 Shape assemble(const SplineModel& model) {
   return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape",
                  [&] { return Shape(Assembly(model).shape()); });
+}
+
+std::vector<std::vector<std::string>> faceFaults(const SplineModel& model) {
+  return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
+    std::vector<std::vector<std::string>> result;
+    const Assembly assembly(model);
+    for (const auto& face : assembly.faces()) result.push_back(faults(Shape(face)));
+    return result;
+  });
 }
 
 }  // namespace trimquad

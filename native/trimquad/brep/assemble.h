@@ -19,6 +19,9 @@ Shape assemble(const SplineModel& model);
 /// edges, continuity, curves on surfaces), as FreeCAD's "Check geometry" runs them.
 std::vector<std::string> faults(const Shape& shape);
 
+/// The same for each face of the model alone, in the model's order.
+std::vector<std::vector<std::string>> faceFaults(const SplineModel& model);
+
 /// Writes STEP AP242 in millimetres, with the curves on the surfaces. The same shape gives the same bytes:
 /// the header carries a fixed date. Throws Error(Input, "write") where the file cannot be written whole.
 void writeStep(const Shape& shape, const std::string& path);
