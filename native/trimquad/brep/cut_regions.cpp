@@ -2,31 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
+#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 #include "trimquad/brep/cad_curve.h"
 #include "trimquad/brep/cad_surface.h"
 
 namespace trimquad {
 namespace {
-
-class UnionFind {
- public:
-  explicit UnionFind(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  /// The smaller number represents both.
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 class RegionCutter {
  public:
@@ -76,9 +59,9 @@ class RegionCutter {
 
   /// Triangles connected across sides that are not cut; in the order of their first triangles.
   std::vector<std::vector<int>> triangleGroups() const {
-    UnionFind groups(mesh_.triangles.size());
+    DisjointSets groups(mesh_.triangles.size());
     for (size_t s = 0; s < uses_.size(); ++s) {
-      if (uses_[s].size() == 2 && !isCut(int(s))) groups.join(uses_[s][0].first, uses_[s][1].first);
+      if (uses_[s].size() == 2 && !isCut(int(s))) groups.unite(uses_[s][0].first, uses_[s][1].first);
       if (uses_[s].size() == 1 && !isCut(int(s)))
         throw inputError("tessellate", "the face cannot be triangulated: its wires cross; repair the shape",
                          cad_.faces[mesh_.triangles[uses_[s][0].first].face].name,
@@ -102,15 +85,15 @@ class RegionCutter {
   TriangleSoup soupOf(const std::vector<int>& triangles, std::vector<int>& origin) const {
     std::vector<int> place(mesh_.triangles.size(), -1);
     for (size_t i = 0; i < triangles.size(); ++i) place[triangles[i]] = int(i);
-    UnionFind fans(3 * triangles.size());
+    DisjointSets fans(3 * triangles.size());
     for (size_t i = 0; i < triangles.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const int side = mesh_.triangles[triangles[i]].side[k];
         if (isCut(side)) continue;
         for (const auto& [t, j] : uses_[side]) {
           if (t == triangles[i]) continue;
-          fans.join(int(3 * i + k), 3 * place[t] + (j + 1) % 3);
-          fans.join(int(3 * i + (k + 1) % 3), 3 * place[t] + j);
+          fans.unite(int(3 * i + k), 3 * place[t] + (j + 1) % 3);
+          fans.unite(int(3 * i + (k + 1) % 3), 3 * place[t] + j);
         }
       }
     TriangleSoup soup;
@@ -174,14 +157,14 @@ class RegionCutter {
 
   /// Regions that share a curve bound one shell. Several shells of a solid (cavities) name the same solid.
   void makeShells(const std::vector<std::vector<int>>& groups) {
-    UnionFind shells(groups.size());
+    DisjointSets shells(groups.size());
     std::vector<int> regionOfCurve(model_.curves.size(), -1);
     for (int r = 0; r < int(groups.size()); ++r)
       for (const auto& curve : model_.regions[r].edgeCurve) {
         if (!curve) continue;
         int& other = regionOfCurve[curve->index];
         if (other >= 0)
-          shells.join(r, other);
+          shells.unite(r, other);
         else
           other = r;
       }

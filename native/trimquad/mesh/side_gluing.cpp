@@ -4,6 +4,7 @@
 #include <numeric>
 #include <string>
 
+#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {
@@ -52,23 +53,6 @@ std::vector<int> ownLabels(std::size_t count) {
   return labels;
 }
 
-/// Union-find whose representative is the smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(ownLabels(count)) {}
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(int a, int b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 }  // namespace
 
 void requireManifoldEdges(const TriangleSoup& soup) {
@@ -115,7 +99,7 @@ std::vector<int> cornerFans(const TriangleSoup& soup, const SideGluing& gluing) 
     fans.unite(next(s), gluing.sameDirection[s] ? next(o) : o);
   }
   std::vector<int> fan(3 * soup.triangles.size());
-  for (int c = 0; c < int(fan.size()); ++c) fan[c] = fans.find(c);
+  for (int c = 0; c < int(fan.size()); ++c) fan[c] = fans.root(c);
   return fan;
 }
 
@@ -124,7 +108,7 @@ std::vector<int> components(const SideGluing& gluing) {
   for (int s = 0; s < int(gluing.opposite.size()); ++s)
     if (gluing.opposite[s]) sets.unite(s / 3, *gluing.opposite[s] / 3);
   std::vector<int> component(gluing.opposite.size() / 3);
-  for (int t = 0; t < int(component.size()); ++t) component[t] = sets.find(t);
+  for (int t = 0; t < int(component.size()); ++t) component[t] = sets.root(t);
   return component;
 }
 

@@ -3,29 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 
+#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {
 namespace {
-
-class DisjointSets {
- public:
-  explicit DisjointSets(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  /// The smallest member stays the root.
-  void unite(int a, int b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 int keptCount(const CellLoop& loop) {
   return int(std::count_if(loop.begin(), loop.end(), [](const auto& p) { return p.kept; }));
