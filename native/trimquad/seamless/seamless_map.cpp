@@ -1,5 +1,6 @@
 #include "trimquad/seamless/seamless_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "trimquad/base/error.h"
@@ -23,6 +24,21 @@ MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, double edg
       target[f.idx()][k] = Eigen::Vector2d((p[k] - p[0]).dot(u), (p[k] - p[0]).dot(v)) / edgeLength;
   }
   return target;
+}
+
+/// How far, in quads, one end of a tube runs along the field's two directions on its way around.
+Eigen::Vector2d lengthAlongEnd(const SurfaceMesh& mesh, const CrossField& field, const MapTarget& target) {
+  const auto loops = boundaryLoops(mesh);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  const auto end = std::find(field.loopTurns.begin(), field.loopTurns.end(), 0) - field.loopTurns.begin();
+  for (const auto boundary : loops[size_t(end)]) {
+    const auto inner = mesh.opposite_halfedge_handle(boundary);
+    const auto f = mesh.face_handle(inner);
+    int k = 0;
+    for (auto h = mesh.halfedge_handle(f); h != inner; h = mesh.next_halfedge_handle(h)) ++k;
+    sum += target[f.idx()][(k + 1) % 3] - target[f.idx()][k];
+  }
+  return sum;
 }
 
 /// Whether the boundary's image meets itself: then the map covers a part of the plane (rolled up in the
@@ -73,17 +89,12 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   const auto& mesh = region.mesh;
   const MapTarget target = mapTarget(mesh, field, edgeLength);
   const SeamGraph seams = seamGraph(mesh, field);
-  // A tube's period lies along one axis: whichever the unconstrained map follows more. An oblique one would
-  // make the grid wind around the tube like a thread.
+  // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
+  // grid wind around the tube like a thread.
   std::vector<BranchTranslation> translations(seams.rotation.size());
   if (!translations.empty()) {
-    const SeamBasis free(mesh, seams, translations);
-    const Eigen::VectorXd z = poissonMap(mesh, target, free);
-    const Eigen::VectorXd x = free.basis().matrix() * z + free.basis().offset();
-    for (int b = 0; b < int(translations.size()); ++b) {
-      const bool alongU = std::abs(x[free.translation(b, 0)]) >= std::abs(x[free.translation(b, 1)]);
-      translations[b][alongU ? 1 : 0] = 0;
-    }
+    const Eigen::Vector2d around = lengthAlongEnd(mesh, field, target);
+    translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
   }
   const SeamBasis basis(mesh, seams, translations);
   SeamlessMap map;

@@ -13,6 +13,8 @@
 namespace trimquad {
 namespace {
 
+constexpr double kConverged = 1e-3;  // relative decrease of the energy in a step, at which optimisation ends
+
 /// Newton steps on the foldover-free energy until no triangle is flipped; whether that was reached.
 bool untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
               const Progress& progress) {
@@ -177,7 +179,7 @@ Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const 
     const double decrease = newtonStep(energy, basis, symmetricDirichlet, kFollow, true, solver, z);
     ++counters.iterations;
     progress.report(0.5 + 0.5 * i / most);
-    if (decrease < 1e-4) break;
+    if (decrease < kConverged) break;
   }
   counters.distortionEnd = energy.meanSymmetricDirichlet(energy.coordinates(z));
   return z;
