@@ -230,6 +230,7 @@ def _trim(result, progress):
                 result.native_shape = native.assemble(result.spline)
             if not _refit_faulty(result, progress):
                 break
+            result.spline = None  # its faces are at fault
         except Error as error:
             if error.kind == "cancelled":
                 raise

@@ -169,3 +169,4 @@ def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeyp
     assert region.error.kind == "stage" and region.error.stage == "fit"
     assert "SelfIntersect" in str(region.error)
     assert region.quads is not None
+    assert result.spline is None and result.native_shape is None
