@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 #include "trimquad/spline/corner_point.h"
 #include "trimquad/spline/trim_curve.h"
@@ -16,24 +16,6 @@ namespace {
 constexpr double kSmallestTolerance = 1e-7;
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// The smaller number stays the representative.
-  void join(int i, int j) {
-    i = find(i);
-    j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// A boundary vertex of a region that is a corner of the model.
 struct CornerUse {
@@ -104,7 +86,8 @@ class ModelTrimmer {
     for (auto& runs : runs_) {
       for (const auto& run : runs)
         if (tooShort(run))
-          corners_.join(model_.curves[run.curve.index].start.index, model_.curves[run.curve.index].end.index);
+          corners_.unite(model_.curves[run.curve.index].start.index,
+                         model_.curves[run.curve.index].end.index);
       std::erase_if(runs, tooShort);
     }
     for (const auto& runs : runs_)
@@ -146,7 +129,7 @@ class ModelTrimmer {
     return int(found - uses_.begin());
   }
   int cornerOf(int region, VertexHandle v) const {
-    return const_cast<DisjointSets&>(corners_).find(model_.regions[region].corner[v.idx()]->index);
+    return const_cast<DisjointSets&>(corners_).root(model_.regions[region].corner[v.idx()]->index);
   }
 
   void placeCorners();
@@ -184,18 +167,18 @@ void ModelTrimmer::placeCorners() {
   for (const auto& [id, curve] : curves_)
     if (curve.sides.size() == 2) {
       const auto &a = *curve.sides[0].run, &b = *curve.sides[1].run;
-      together.join(cornerUse(a.region, a.vertices.front()), cornerUse(b.region, b.vertices.front()));
-      together.join(cornerUse(a.region, a.vertices.back()), cornerUse(b.region, b.vertices.back()));
+      together.unite(cornerUse(a.region, a.vertices.front()), cornerUse(b.region, b.vertices.front()));
+      together.unite(cornerUse(a.region, a.vertices.back()), cornerUse(b.region, b.vertices.back()));
     }
   std::vector<int> shellOf(model_.regions.size(), -1);
   for (int s = 0; s < int(model_.shells.size()); ++s)
     for (const int r : model_.shells[s].regions) shellOf[r] = s;
   for (std::size_t i = 0; i < uses_.size(); ++i)
     for (std::size_t j = i + 1; j < uses_.size() && uses_[j].corner == uses_[i].corner; ++j)
-      if (shellOf[uses_[i].region] == shellOf[uses_[j].region]) together.join(int(i), int(j));
+      if (shellOf[uses_[i].region] == shellOf[uses_[j].region]) together.unite(int(i), int(j));
 
   std::map<int, std::vector<int>> groups;
-  for (int i = 0; i < int(uses_.size()); ++i) groups[together.find(i)].push_back(i);
+  for (int i = 0; i < int(uses_.size()); ++i) groups[together.root(i)].push_back(i);
   for (const auto& [first, members] : groups) {
     std::vector<const Sheet*> sheets;
     std::vector<Eigen::Vector2d> guess;
@@ -318,15 +301,15 @@ void ModelTrimmer::appendShells(SplineModel& result) const {
         for (const auto& coedge : loop) usersOf[coedge.edge.index].push_back(f);
     DisjointSets connected(result.faces.size());
     for (const auto& users : usersOf)
-      for (const int f : users) connected.join(users.front(), f);
+      for (const int f : users) connected.unite(users.front(), f);
     std::map<int, SplineModel::Shell> parts;
-    for (const int f : faces) parts[connected.find(f)].faces.push_back(f);
+    for (const int f : faces) parts[connected.root(f)].faces.push_back(f);
     const bool complete =
         std::all_of(shell.regions.begin(), shell.regions.end(), [&](int r) { return fitted_[r]; });
     for (auto& [root, part] : parts) {
       bool closed = complete;
       for (const auto& users : usersOf)
-        if (!users.empty() && connected.find(users.front()) == root && users.size() != 2) closed = false;
+        if (!users.empty() && connected.root(users.front()) == root && users.size() != 2) closed = false;
       if (closed) part.solid = shell.solid;
       result.shells.push_back(std::move(part));
     }
