@@ -21,6 +21,12 @@ struct CrossField {
   std::vector<int> loopTurns;
 };
 
+/// Directions that a field should follow, up to quarter turns.
+struct FieldGuidance {
+  std::vector<Eigen::Vector3d> direction;  ///< by face index, tangent; length does not matter
+  std::vector<double> weight;              ///< by face index, in [0, 1]; 0 where there is no wish
+};
+
 /// The smoothest field without singularities, following principal curvature where it is distinct.
 /// Only for regions of genus 0 with a boundary; throws Error(Stage) for others, which need singularities.
 CrossField crossField(const Region& region, const Progress& progress);

@@ -34,6 +34,11 @@ struct Region {
   std::vector<double> curveParameter;
   /// Per vertex: the model's corner that it is, where it ends a curve (a CAD vertex that regions share).
   std::vector<std::optional<CornerId>> corner;
+
+  /// Edges that must lie on grid lines: aligned boundary edges and aligned feature edges. Ascending.
+  std::vector<EdgeHandle> aligned;
+  /// Vertices that must lie on grid points. Ascending.
+  std::vector<VertexHandle> featurePoints;
 };
 
 /// A curve of a model, from corner to corner. A closed curve starts and ends in the same corner.
