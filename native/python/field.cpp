@@ -5,6 +5,8 @@
 #include <map>
 
 #include "bindings.h"
+#include "trimquad/field/curvature_guidance.h"
+#include "trimquad/field/singularity_free_field.h"
 
 namespace py = pybind11;
 
@@ -21,7 +23,20 @@ void bindField(py::module_& m) {
             return counts;
           },
           "index in quarter turns -> number of vertices");
-  m.def("cross_field", &crossField, py::arg("region"), py::arg("progress"), Released());
+  py::class_<FieldGuidance>(m, "FieldGuidance");
+  m.def("curvature_guidance", &curvatureGuidance, py::arg("region"), py::arg("progress"), Released());
+  m.def("cross_field", &crossField, py::arg("region"), py::arg("guidance"), py::arg("guidance_reach"),
+        py::arg("progress"), Released());
+  m.def(
+      "singularity_free_field",
+      [](const Region& region, const FieldGuidance& guidance, const Progress& progress) {
+        requireArea(region.mesh);
+        return singularityFreeField(region.mesh, guidance, progress);
+      },
+      py::arg("region"), py::arg("guidance"), py::arg("progress"), Released());
+  m.def(
+      "admits_no_singularity", [](const Region& region) { return admitsNoSingularity(region.mesh); },
+      py::arg("region"), Released());
 }
 
 }  // namespace trimquad
