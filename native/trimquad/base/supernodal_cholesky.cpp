@@ -3,13 +3,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "trimquad/base/dense_cholesky.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {
 namespace {
 
 using Supernode = SupernodalPattern::Supernode;
-using Block = Eigen::Map<Eigen::MatrixXd>;
 using ConstBlock = Eigen::Map<const Eigen::MatrixXd>;
 
 /// Adds a child's update matrix to the block and the update matrix of its parent.
@@ -24,37 +24,24 @@ void extendAdd(const double* child, int size, const int* place, double* block, c
   }
 }
 
-/// Factorises the block's columns and subtracts what they contribute from the update matrix.
-bool eliminate(double* block, const Supernode& node, double* update) {
-  Block panel(block, node.rows, node.columns);
-  auto diagonal = panel.topRows(node.columns);
-  auto lower = panel.bottomRows(node.below());
-  if (Eigen::internal::llt_inplace<double, Eigen::Lower>::blocked(diagonal) >= 0) return false;
-  for (int j = 0; j < node.columns; ++j)
-    if (!(diagonal(j, j) > 0)) return false;  // not a number
-  if (node.below() == 0) return true;
-  diagonal.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(lower);
-  Block(update, node.below(), node.below()).selfadjointView<Eigen::Lower>().rankUpdate(lower, -1);
-  return true;
-}
-
 }  // namespace
 
 void SupernodalCholesky::analyse(const Eigen::SparseMatrix<double>& matrix) {
   TRIMQUAD_ASSERT(matrix.isCompressed() && matrix.rows() == matrix.cols());
   pattern_ = SupernodalPattern(matrix);
-  values_.clear();
 }
 
 bool SupernodalCholesky::factorize(const Eigen::SparseMatrix<double>& matrix) {
   const auto& nodes = pattern_.supernodes;
-  values_.assign(pattern_.numbers, 0.0);
-  std::vector<double> stack(pattern_.stack);
+  values_.resize(pattern_.numbers);
+  stack_.resize(pattern_.stack);
+  std::vector<double> scratch;
   std::vector<int> waiting;  // supernodes whose update matrices are on the stack
-  double* top = stack.data();
+  double* top = stack_.data();
   for (int s = 0; s < int(nodes.size()); ++s) {
     const Supernode& node = nodes[s];
     const auto lastEntry = s + 1 < int(nodes.size()) ? nodes[s + 1].firstEntry : int(pattern_.entry.size());
+    std::fill_n(values_.data() + node.values, std::int64_t(node.columns) * node.rows, 0.0);
     for (int e = node.firstEntry; e < lastEntry; ++e)
       values_[pattern_.entry[e].place] += matrix.valuePtr()[pattern_.entry[e].source];
     double *block = values_.data() + node.values, *update = top;
@@ -67,7 +54,7 @@ bool SupernodalCholesky::factorize(const Eigen::SparseMatrix<double>& matrix) {
       extendAdd(base, child.below(), pattern_.rowInParent.data() + child.firstRow, block, node, update);
       waiting.pop_back();
     }
-    if (!eliminate(block, node, update)) return false;
+    if (!eliminate(block, node.rows, node.columns, update, scratch)) return false;
     if (base != update) std::copy_n(update, size, base);
     top = base + size;
     waiting.push_back(s);

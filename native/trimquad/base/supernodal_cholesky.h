@@ -54,7 +54,7 @@ class SupernodalCholesky {
 
  private:
   SupernodalPattern pattern_;
-  std::vector<double> values_;
+  std::vector<double> values_, stack_;
 };
 
 }  // namespace trimquad
