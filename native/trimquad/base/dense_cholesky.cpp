@@ -18,15 +18,19 @@ constexpr int kBlock = 32;   // columns that are factorised together
 constexpr int kDepth = 256;  // columns whose products are subtracted together: a tile row fits the L1 cache
 constexpr int kRowGroup = 128;  // rows whose packed columns fit the L2 cache
 
-/// Four numbers anywhere in memory.
-using Vector = double __attribute__((vector_size(32), aligned(8), may_alias));
-
-TRIMQUAD_INLINE Vector& four(double* p) {
-  return *reinterpret_cast<Vector*>(p);
-}
-TRIMQUAD_INLINE const Vector& four(const double* p) {
-  return *reinterpret_cast<const Vector*>(p);
-}
+/// Registers of two or four numbers, which may be anywhere in memory.
+struct Two {
+  using Vector = double __attribute__((vector_size(16), aligned(8), may_alias));
+  static constexpr int kLanes = 2;
+  static TRIMQUAD_INLINE Vector& at(double* p) { return *reinterpret_cast<Vector*>(p); }
+  static TRIMQUAD_INLINE const Vector& at(const double* p) { return *reinterpret_cast<const Vector*>(p); }
+};
+struct Four {
+  using Vector = double __attribute__((vector_size(32), aligned(8), may_alias));
+  static constexpr int kLanes = 4;
+  static TRIMQUAD_INLINE Vector& at(double* p) { return *reinterpret_cast<Vector*>(p); }
+  static TRIMQUAD_INLINE const Vector& at(const double* p) { return *reinterpret_cast<const Vector*>(p); }
+};
 
 /// Columns in tiles of rows, so that the product reads them one after another; the last tile is filled up
 /// with zeros.
@@ -35,45 +39,49 @@ TRIMQUAD_INLINE void pack(const double* a, std::int64_t stride, int rows, int de
     const int count = std::min(kTileRows, rows - first);
     for (int p = 0; p < depth; ++p, packed += kTileRows) {
       const double* column = a + p * stride + first;
-      if (count == kTileRows) {
-        four(packed) = four(column);
-        four(packed + 4) = four(column + 4);
-      } else {
+      if (count == kTileRows)
+        for (int i = 0; i < kTileRows; ++i) packed[i] = column[i];
+      else
         for (int i = 0; i < kTileRows; ++i) packed[i] = i < count ? column[i] : 0.0;
-      }
     }
   }
 }
 
-/// c -= a b^T for one tile, of which rows x columns are stored.
+/// c -= a b^T for one tile, of which rows x columns are stored. As many rows at once as two registers hold.
+template <typename Lanes>
 TRIMQUAD_INLINE void subtractTile(const double* a, const double* b, int depth, double* c, std::int64_t stride,
                                   int rows, int columns) {
-  Vector low[kTileColumns] = {}, high[kTileColumns] = {};
-  for (int p = 0; p < depth; ++p, a += kTileRows, b += kTileRows) {
-    const Vector a0 = four(a), a1 = four(a + 4);
-    for (int j = 0; j < kTileColumns; ++j) {
-      const Vector factor = {b[j], b[j], b[j], b[j]};
-      low[j] += a0 * factor;
-      high[j] += a1 * factor;
+  constexpr int kLanes = Lanes::kLanes, kRows = 2 * kLanes;
+  for (int top = 0; top < rows; top += kRows) {
+    typename Lanes::Vector low[kTileColumns] = {}, high[kTileColumns] = {};
+    const double *left = a + top, *right = b;
+    for (int p = 0; p < depth; ++p, left += kTileRows, right += kTileRows) {
+      const typename Lanes::Vector a0 = Lanes::at(left), a1 = Lanes::at(left + kLanes);
+      for (int j = 0; j < kTileColumns; ++j) {
+        low[j] += a0 * right[j];
+        high[j] += a1 * right[j];
+      }
     }
-  }
-  if (rows == kTileRows && columns == kTileColumns) {
-    for (int j = 0; j < kTileColumns; ++j, c += stride) {
-      four(c) -= low[j];
-      four(c + 4) -= high[j];
+    double* target = c + top;
+    if (rows - top >= kRows && columns == kTileColumns) {
+      for (int j = 0; j < kTileColumns; ++j, target += stride) {
+        Lanes::at(target) -= low[j];
+        Lanes::at(target + kLanes) -= high[j];
+      }
+      continue;
     }
-    return;
-  }
-  double part[kTileRows];
-  for (int j = 0; j < columns; ++j, c += stride) {
-    four(part) = low[j];
-    four(part + 4) = high[j];
-    for (int i = 0; i < rows; ++i) c[i] -= part[i];
+    double part[kRows];
+    for (int j = 0; j < columns; ++j, target += stride) {
+      Lanes::at(part) = low[j];
+      Lanes::at(part + kLanes) = high[j];
+      for (int i = 0; i < std::min(kRows, rows - top); ++i) target[i] -= part[i];
+    }
   }
 }
 
 /// c -= a a^T for the first `columns` columns of the lower triangle, a packed. Tiles that meet the diagonal
 /// are written as a whole.
+template <typename Lanes>
 TRIMQUAD_INLINE void subtractProduct(const double* packed, int rows, int columns, int depth, double* c,
                                      std::int64_t stride) {
   for (int group = 0; group < rows; group += kRowGroup) {
@@ -82,14 +90,15 @@ TRIMQUAD_INLINE void subtractProduct(const double* packed, int rows, int columns
       const double* b = packed + std::int64_t(j / kTileRows) * kTileRows * depth + j % kTileRows;
       const int first = std::max(group, j / kTileRows * kTileRows);
       for (int i = first; i < groupEnd; i += kTileRows)
-        subtractTile(packed + std::int64_t(i) * depth, b, depth, c + j * stride + i, stride,
-                     std::min(kTileRows, rows - i), std::min(kTileColumns, columns - j));
+        subtractTile<Lanes>(packed + std::int64_t(i) * depth, b, depth, c + j * stride + i, stride,
+                            std::min(kTileRows, rows - i), std::min(kTileColumns, columns - j));
     }
   }
 }
 
 /// Cholesky factor of a small block in place, column by column, and the rows below it divided by its
 /// transpose.
+template <typename Lanes>
 TRIMQUAD_INLINE bool factorizeBlock(double* a, std::int64_t stride, int rows, int columns) {
   double inverse[kBlock];
   for (int j = 0; j < columns; ++j) {
@@ -105,23 +114,18 @@ TRIMQUAD_INLINE bool factorizeBlock(double* a, std::int64_t stride, int rows, in
     for (int i = j + 1; i < columns; ++i) column[i] *= inverse[j];
   }
   int first = columns;
-  for (; first + 16 <= rows; first += 16)
+  constexpr int kLanes = Lanes::kLanes;
+  for (; first + 4 * kLanes <= rows; first += 4 * kLanes)
     for (int j = 0; j < columns; ++j) {
       double* const column = a + j * stride + first;
-      Vector x0 = four(column), x1 = four(column + 4), x2 = four(column + 8), x3 = four(column + 12);
+      typename Lanes::Vector x[4];
+      for (int i = 0; i < 4; ++i) x[i] = Lanes::at(column + i * kLanes);
       for (int p = 0; p < j; ++p) {
         const double* other = a + p * stride;
-        const double f = other[j];
-        const Vector factor = {f, f, f, f};
-        x0 -= factor * four(other + first);
-        x1 -= factor * four(other + first + 4);
-        x2 -= factor * four(other + first + 8);
-        x3 -= factor * four(other + first + 12);
+        const double factor = other[j];
+        for (int i = 0; i < 4; ++i) x[i] -= Lanes::at(other + first + i * kLanes) * factor;
       }
-      four(column) = x0 * inverse[j];
-      four(column + 4) = x1 * inverse[j];
-      four(column + 8) = x2 * inverse[j];
-      four(column + 12) = x3 * inverse[j];
+      for (int i = 0; i < 4; ++i) Lanes::at(column + i * kLanes) = x[i] * inverse[j];
     }
   for (int j = 0; j < columns && first < rows; ++j) {
     double* const column = a + j * stride;
@@ -135,32 +139,33 @@ TRIMQUAD_INLINE bool factorizeBlock(double* a, std::int64_t stride, int rows, in
   return true;
 }
 
+template <typename Lanes>
 TRIMQUAD_INLINE bool eliminateWith(double* panel, int rows, int columns, double* update, double* packed) {
   const std::int64_t stride = rows;
   for (int j = 0; j < columns; j += kBlock) {
     const int width = std::min(kBlock, columns - j), end = j + width;
-    if (!factorizeBlock(panel + j * (stride + 1), stride, rows - j, width)) return false;
+    if (!factorizeBlock<Lanes>(panel + j * (stride + 1), stride, rows - j, width)) return false;
     if (end == columns) break;
     pack(panel + j * stride + end, stride, rows - end, width, packed);
-    subtractProduct(packed, rows - end, columns - end, width, panel + end * (stride + 1), stride);
+    subtractProduct<Lanes>(packed, rows - end, columns - end, width, panel + end * (stride + 1), stride);
   }
   const int below = rows - columns;
   for (int j = 0; j < columns && below > 0; j += kDepth) {
     const int depth = std::min(kDepth, columns - j);
     pack(panel + j * stride + columns, stride, below, depth, packed);
-    subtractProduct(packed, below, below, depth, update, below);
+    subtractProduct<Lanes>(packed, below, below, depth, update, below);
   }
   return true;
 }
 
 bool eliminateAnywhere(double* panel, int rows, int columns, double* update, double* packed) {
-  return eliminateWith(panel, rows, columns, update, packed);
+  return eliminateWith<Two>(panel, rows, columns, update, packed);
 }
 
 #ifdef TRIMQUAD_HAS_AVX2_KERNELS
 __attribute__((target("avx2,fma"))) bool eliminateWithAvx2(double* panel, int rows, int columns,
                                                            double* update, double* packed) {
-  return eliminateWith(panel, rows, columns, update, packed);
+  return eliminateWith<Four>(panel, rows, columns, update, packed);
 }
 #endif
 
