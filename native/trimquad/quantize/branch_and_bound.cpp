@@ -8,7 +8,7 @@
 namespace trimquad {
 namespace {
 
-constexpr int kMostBranches = 2000;
+constexpr int kMostBranches = 10000;
 /// Objectives that differ by less are equal: the flow's costs are rounded.
 constexpr double kEqual = 1e-5;
 
@@ -32,10 +32,7 @@ class Search {
       : dual_(dual), objective_(objective), separation_(separation), best_(q), bestObjective_(objective(q)) {}
 
   Optimum run(const Progress& progress) && {
-    LengthBounds free;
-    free.least.assign(best_.size(), 0);
-    free.most.resize(best_.size());
-    add(std::move(free), best_);
+    add(boundsOfSeparation(dual_, separation_), best_);
     double bound = bestObjective_;
     while (!open_.empty()) {
       progress.check();

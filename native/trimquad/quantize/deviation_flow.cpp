@@ -19,6 +19,8 @@ using Cost = long long;
 constexpr double kCostsPerUnit = double(1 << 24);
 /// Windows reach so far to both sides.
 constexpr int kWindow = 3;
+/// Collapses are repaired in so many rounds at most.
+constexpr int kRepairs = 100;
 /// Windows are moved so often, then only made wider.
 constexpr int kMoves = 20;
 
@@ -135,6 +137,48 @@ std::optional<DeviationFlow> leastDeviation(const Dual& dual, const Objective& o
     }
     if (isExact) return found;
   }
+}
+
+LengthBounds boundsOfSeparation(const Dual& dual, const SeparationTest& separation) {
+  LengthBounds bounds;
+  bounds.most.resize(dual.uses.size());
+  for (std::size_t a = 0; a < dual.uses.size(); ++a) bounds.least.push_back(separation.mustNotVanish({int(a)}));
+  return bounds;
+}
+
+std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective, const SeparationTest& separation,
+                                        const ArcLengths& start, const Progress& progress) {
+  LengthBounds bounds = boundsOfSeparation(dual, separation);
+  ArcLengths q = start;
+  for (int round = 0; round < kRepairs; ++round) {
+    progress.check();
+    const auto flow = leastDeviation(dual, objective, bounds, q);
+    if (!flow) return {};
+    bool isWhole = true;
+    for (std::size_t a = 0; a < q.size(); ++a) {
+      q[a] = flow->twice[a] / 2;
+      if (flow->twice[a] % 2 == 0 || !isWhole) continue;
+      // One half length at a time is made whole: upwards, which no separation minds.
+      isWhole = false;
+      bounds.least[a] = q[a] + 1;
+    }
+    if (!isWhole) continue;
+    const auto faults = separation.faults(q);
+    if (faults.empty()) return q;
+    bool canChange = false;
+    for (const Collapse& fault : faults) {
+      std::optional<ArcId> longest;
+      for (const ArcId a : fault.zeroArcs)
+        if (bounds.least[a.index] == 0 &&
+            (!longest || objective.target[a.index] > objective.target[longest->index]))
+          longest = a;
+      if (!longest) continue;
+      bounds.least[longest->index] = 1;
+      canChange = true;
+    }
+    if (!canChange) return {};
+  }
+  return {};
 }
 
 }  // namespace trimquad

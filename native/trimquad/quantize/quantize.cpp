@@ -2,6 +2,7 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/quantize/branch_and_bound.h"
+#include "trimquad/quantize/deviation_flow.h"
 #include "trimquad/quantize/greedy.h"
 
 namespace trimquad {
@@ -14,6 +15,10 @@ Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, co
   result.method = "greedy";
   result.length = positiveLengths(dual, objective, progress);
   result.steps = improveGreedily(dual, objective, separation, result.length, progress);
+  if (auto other = separatedFlow(dual, objective, separation, result.length, progress)) {
+    const int steps = improveGreedily(dual, objective, separation, *other, progress);
+    if (objective(*other) < objective(result.length)) result.length = std::move(*other), result.steps = steps;
+  }
   if (options.optimal) {
     Optimum optimum = leastLengths(dual, objective, separation, result.length, progress);
     result.length = std::move(optimum.length);

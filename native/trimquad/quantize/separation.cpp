@@ -1,6 +1,7 @@
 #include "trimquad/quantize/separation.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -89,11 +90,13 @@ class CollapseSearch {
     collapse.zeroArcs.assign(zeroArcs.begin(), zeroArcs.end());
     std::set<PatchId> patches;
     for (const Crossing& c : crossings) patches.insert(c.patch);
+    addArcs(patches, collapse, true);
     // More may be sound again, if the inside of a zero loop vanishes too or a piece of boundary between two
     // points.
-    if (!forGood)
+    if (!forGood) {
       for (const Point& p : points) addPatchesAround(p, patches);
-    addArcs(patches, collapse);
+      addArcs(patches, collapse, false);
+    }
     return collapse;
   }
 
@@ -126,7 +129,7 @@ class CollapseSearch {
     }
     if (!isRing && curves <= 1) return {};
     Collapse collapse;
-    addArcs(patches, collapse);
+    addArcs(patches, collapse, true);
     return collapse;
   }
 
@@ -194,11 +197,12 @@ class CollapseSearch {
     for (const HalfArc h : dual_.leaving[p.node->index]) add(h);
   }
 
-  void addArcs(const std::set<PatchId>& patches, Collapse& collapse) const {
+  void addArcs(const std::set<PatchId>& patches, Collapse& collapse, bool zeroApart) const {
     std::set<ArcId> zero(collapse.zeroArcs.begin(), collapse.zeroArcs.end()), others;
     for (const PatchId p : patches)
       for (const auto& side : tmesh_[p].sides)
-        for (const HalfArc h : side) (q_[h.arc.index] == 0 ? zero : others).insert(h.arc);
+        for (const HalfArc h : side)
+          if (!zero.contains(h.arc)) (zeroApart && q_[h.arc.index] == 0 ? zero : others).insert(h.arc);
     collapse.zeroArcs.assign(zero.begin(), zero.end());
     collapse.others.assign(others.begin(), others.end());
   }
@@ -227,18 +231,46 @@ SeparationTest::SeparationTest(const Dual& dual, Separation separation)
     }
 }
 
+bool SeparationTest::mustNotVanish(ArcId arc) const {
+  const NodeId a = tmesh_[arc].from, b = tmesh_[arc].to;
+  if (a == b) return isCritical_[a.index];
+  const auto lonely = [&](NodeId n) { return isCritical_[n.index] && !onCurve_[n.index]; };
+  return (isCritical_[a.index] && isCritical_[b.index]) || (lonely(a) && onCurve_[b.index]) ||
+         (lonely(b) && onCurve_[a.index]);
+}
+
 std::optional<Collapse> SeparationTest::fault(const ArcLengths& q) const {
-  std::vector<ArcId> all;
-  for (std::size_t a = 0; a < tmesh_.arcs.size(); ++a) all.push_back({int(a)});
-  return fault(q, all);
+  return fault(q, allArcs());
 }
 
 std::optional<Collapse> SeparationTest::fault(const ArcLengths& q, const std::vector<ArcId>& touched) const {
+  auto first = search(q, touched, 1);
+  if (first.empty()) return {};
+  return std::move(first.front());
+}
+
+std::vector<Collapse> SeparationTest::faults(const ArcLengths& q) const {
+  return search(q, allArcs(), std::numeric_limits<std::size_t>::max());
+}
+
+std::vector<ArcId> SeparationTest::allArcs() const {
+  std::vector<ArcId> all;
+  for (std::size_t a = 0; a < tmesh_.arcs.size(); ++a) all.push_back({int(a)});
+  return all;
+}
+
+std::vector<Collapse> SeparationTest::search(const ArcLengths& q, const std::vector<ArcId>& touched,
+                                             std::size_t most) const {
   CollapseSearch search(dual_, q, isCritical_, onCurve_);
+  std::vector<Collapse> found;
+  const auto full = [&](std::optional<Collapse> collapse) {
+    if (collapse) found.push_back(std::move(*collapse));
+    return found.size() >= most;
+  };
   std::set<PatchId> zeroPatches;
   for (const ArcId a : touched) {
     for (const NodeId n : {tmesh_[a].from, tmesh_[a].to})
-      if (auto collapse = search.faultAt({n})) return collapse;
+      if (full(search.faultAt({n}))) return found;
     for (const auto& use : dual_.uses[a.index]) {
       const auto& sides = tmesh_[use.equation.patch()].sides;
       if (lengthOf(sides[0], q) == 0 || lengthOf(sides[1], q) == 0) zeroPatches.insert(use.equation.patch());
@@ -247,14 +279,13 @@ std::optional<Collapse> SeparationTest::fault(const ArcLengths& q, const std::ve
   for (const PatchId p : zeroPatches)
     for (const auto& side : tmesh_[p].sides)
       for (const HalfArc h : side) {
-        if (auto collapse = search.faultAt({tmesh_.start(h)})) return collapse;
+        if (full(search.faultAt({tmesh_.start(h)}))) return found;
         for (int k = 0; k < q[h.arc.index]; ++k) {
-          if (k > 0)
-            if (auto collapse = search.faultAt({{}, h.arc, k})) return collapse;
-          if (auto collapse = search.faultAlong({h.arc, k})) return collapse;
+          if (k > 0 && full(search.faultAt({{}, h.arc, k}))) return found;
+          if (full(search.faultAlong({h.arc, k}))) return found;
         }
       }
-  return {};
+  return found;
 }
 
 }  // namespace trimquad

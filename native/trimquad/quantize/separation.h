@@ -16,8 +16,8 @@ enum class Separation {
 /// Why lengths admit no integer grid map: the arcs whose lengths, taken together, make it so. As long as they
 /// keep them, the lengths stay inadmissible whatever the others are.
 struct Collapse {
-  std::vector<ArcId> zeroArcs;  ///< of length zero
-  std::vector<ArcId> others;
+  std::vector<ArcId> zeroArcs;  ///< that are collapsed onto one point or line
+  std::vector<ArcId> others;    ///< that say what else is
 };
 
 /// Tests consistent lengths for separation. A patch of zero width is mapped onto a line and a zero arc onto a
@@ -35,11 +35,20 @@ class SeparationTest {
   /// The first fault, or none.
   std::optional<Collapse> fault(const ArcLengths& q) const;
 
-  /// The same, where lengths without fault were changed in `touched` arcs only; as costly as what lies near
+  /// All of them, each with arcs of its own class.
+  std::vector<Collapse> faults(const ArcLengths& q) const;
+
+  /// Whether the arc has length one at least in all separating lengths, by what its two ends are.
+  bool mustNotVanish(ArcId arc) const;
+
+  /// The same as without `touched`, where lengths without fault were changed in `touched` arcs only; as costly as what lies near
   /// them.
   std::optional<Collapse> fault(const ArcLengths& q, const std::vector<ArcId>& touched) const;
 
  private:
+  std::vector<ArcId> allArcs() const;
+  std::vector<Collapse> search(const ArcLengths& q, const std::vector<ArcId>& touched, std::size_t most) const;
+
   const Dual& dual_;
   const TMesh& tmesh_;
   std::vector<bool> isCritical_;  ///< by node

@@ -27,11 +27,11 @@ TEST(Quantize, randomSurfaces) {
     const TMesh tmesh = partition(randomMap(seed), progress);
     const Quantization greedy = quantize(tmesh, {}, progress);
     QuantizationOptions options;
-    options.optimal = true;
+    options.optimal = tmesh.arcs.size() < 60;
     const Quantization optimal = quantize(tmesh, options, progress);
-    printf("seed %u arcs %zu greedy %.6g %s %.6g bound %.6g zero %d/%d\n", seed, tmesh.arcs.size(), greedy.objective, optimal.method.c_str(), optimal.objective, *optimal.lowerBound, greedy.zeroArcs, greedy.zeroPatches);
+    printf("seed %u arcs %zu greedy %.6g %s %.6g bound %.6g zero %d/%d\n", seed, tmesh.arcs.size(), greedy.objective, optimal.method.c_str(), optimal.objective, optimal.lowerBound.value_or(0), greedy.zeroArcs, greedy.zeroPatches);
     fflush(stdout);
     EXPECT_LE(optimal.objective, greedy.objective + 1e-6);
-    EXPECT_LE(*optimal.lowerBound, optimal.objective + 1e-6);
+    EXPECT_LE(optimal.lowerBound.value_or(0), optimal.objective + 1e-6);
   }
 }
