@@ -24,8 +24,10 @@ def report(result):
     return {
         "input": {"path": result.source.path, "kind": result.source.kind, **result.shape_counts,
                   "repairs": result.repairs},
+        "warnings": result.warnings,
         "options": {k: v for k, v in sorted(vars(result.options).items())},
         "regions": regions,
+        "curves": result.model.curves,
         "loose_edges": result.spline and result.spline.loose_edges,
         "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions), 6),
         "peak_memory_mb": _peak_memory_mb(),
@@ -48,6 +50,7 @@ def _region_report(result, index, item, seconds):
             "boundary_loops": item.region.boundary_loops,
             "euler": item.region.euler,
         },
+        "features": item.region.features,
         "singularities": item.field and _singularities(item.field),
         "seamless": item.seamless and {"flipped": 0, **item.seamless.counters},
         "tmesh": None,

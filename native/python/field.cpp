@@ -4,8 +4,10 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <optional>
 
 #include "bindings.h"
+#include "trimquad/base/error.h"
 #include "trimquad/field/field_file.h"
 
 namespace py = pybind11;
@@ -20,6 +22,13 @@ py::array_t<double> rowsOf(const std::vector<Eigen::Vector3d>& vectors) {
   for (std::size_t i = 0; i < vectors.size(); ++i)
     for (int k = 0; k < 3; ++k) r(i, k) = vectors[i][k];
   return rows;
+}
+
+CrossField fieldOf(const Region& region, const std::string& follow,
+                   const std::optional<FieldGuidance>& guidance, const Progress& progress) {
+  if (follow != "curvature" || guidance)
+    throw inputError("options", "--field " + follow + " is not in this version yet; leave it out");
+  return crossField(region, progress);
 }
 
 }  // namespace
@@ -60,7 +69,9 @@ void bindField(py::module_& m) {
         py::arg("region"), py::arg("by_input_triangle"), Released());
   m.def("guidance_of_points", py::overload_cast<const Region&, const FieldFile&>(&guidanceOf),
         py::arg("region"), py::arg("field"), Released());
-  m.def("cross_field", &crossField, py::arg("region"), py::arg("progress"), Released());
+  m.def("cross_field", &fieldOf, py::arg("region"), py::arg("follow"), py::arg("guidance"),
+        py::arg("progress"), Released(),
+        "follow: 'curvature', 'smooth', or anything else where `guidance` says what the field follows");
 }
 
 }  // namespace trimquad

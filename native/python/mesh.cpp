@@ -8,6 +8,7 @@
 #include "trimquad/mesh/edge_choice.h"
 #include "trimquad/mesh/feature_graph.h"
 #include "trimquad/mesh/mesh_model.h"
+#include "trimquad/mesh/parametrization.h"
 #include "trimquad/mesh/read_mesh.h"
 #include "trimquad/mesh/region.h"
 
@@ -170,6 +171,20 @@ void bindRegion(py::module_& m) {
 }
 
 }  // namespace
+
+py::tuple arraysOf(const Parametrization& map) {
+  py::array_t<double> images({py::ssize_t(map.mesh.n_faces()), py::ssize_t(3), py::ssize_t(2)});
+  auto uv = images.mutable_unchecked<3>();
+  for (const auto f : map.mesh.faces()) {
+    auto h = map.mesh.halfedge_handle(f);
+    for (int k = 0; k < 3; ++k, h = map.mesh.next_halfedge_handle(h)) {
+      const Eigen::Vector2d x = map.scale.toQuads(map.from(h));
+      uv(f.idx(), k, 0) = x.x();
+      uv(f.idx(), k, 1) = x.y();
+    }
+  }
+  return py::make_tuple(pointsOf(map.mesh), cornersOf(map.mesh), images);
+}
 
 void bindMesh(py::module_& m) {
   bindRegion(m);

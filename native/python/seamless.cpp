@@ -21,6 +21,7 @@ py::dict countersOf(const MapCounters& counters) {
 void bindSeamless(py::module_& m) {
   py::class_<SeamlessMap>(m, "SeamlessMap")
       .def_property_readonly("counters", [](const SeamlessMap& map) { return countersOf(map.counters); })
+      .def_property_readonly("arrays", [](const SeamlessMap& map) { return arraysOf(map); })
       .def(
           "to_obj", [](const SeamlessMap& map) { return writeObj(map); }, Released());
   m.def("seamless_map", &seamlessMap, py::arg("region"), py::arg("field"), py::arg("edge_length"),
