@@ -218,7 +218,8 @@ void bindMesh(py::module_& m) {
       .def_property_readonly("diagonal", &RepairedMesh::diagonal)
       .def_property_readonly("repairs", [](const RepairedMesh& mesh) { return repairsOf(mesh.report); })
       .def_property_readonly("summary", [](const RepairedMesh& mesh) { return mesh.report.summary(); });
-  m.def("read_mesh", &readMesh, py::arg("path"), Released());
+  m.def(
+      "read_mesh", [](const std::string& path) { return readMesh(path); }, py::arg("path"), Released());
   m.def("mesh_from_arrays", &meshOf, py::arg("points"), py::arg("triangles"));
   m.def("repair", &repaired, py::arg("mesh"), Released());
   m.def(

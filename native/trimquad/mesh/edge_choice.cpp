@@ -21,7 +21,8 @@ std::pair<double, double> angleRange(const std::string& name) {
   const bool dash = first.ec == std::errc{} && first.ptr != end && *first.ptr == '-';
   const auto last = dash ? std::from_chars(first.ptr + 1, end, to) : first;
   if (!dash || last.ec != std::errc{} || last.ptr != end || !(0 <= from && from < to && to <= 180))
-    throw inputError("options", "an angle between faces is written angle:A-B with 0 <= A < B <= 180 degrees, not " + name);
+    throw inputError(
+        "options", "an angle between faces is written angle:A-B with 0 <= A < B <= 180 degrees, not " + name);
   return {from, to};
 }
 
@@ -47,15 +48,14 @@ std::vector<std::string> pieceNames(const std::vector<ModelCurve>& curves) {
 
 std::vector<bool> chosenEdges(const SurfaceMesh& mesh, const std::vector<ModelCurve>& curves,
                               const std::vector<std::optional<CurveId>>& curve,
-                              const std::vector<std::string>& names, double shortest) {
+                              const std::vector<std::string>& names) {
   std::vector<bool> chosen(mesh.n_edges(), false);
   const std::vector<std::string> pieces = pieceNames(curves);
   for (const std::string& name : names) {
     if (name.starts_with(kAngle)) {
       const auto [from, to] = angleRange(name);
       const double degree = std::numbers::pi / 180;
-      const auto sharp = sharpEdges(
-          mesh, {.angle = from * degree, .most = to * degree, .follow = false, .shortest = shortest});
+      const auto sharp = sharpEdges(mesh, {.angle = from * degree, .most = to * degree, .follow = false});
       for (const auto e : mesh.edges())
         if (sharp[e.idx()]) chosen[e.idx()] = true;
       continue;

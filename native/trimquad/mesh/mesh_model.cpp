@@ -64,9 +64,8 @@ class ModelCut {
         input_(input),
         progress_(progress),
         component_(partsBetween(mesh, std::vector<bool>(mesh.n_edges(), false))),
-        part_(options_.sharp == FeatureOptions::Sharp::Trim
-                  ? partsBetween(mesh, sharp(kShortestBorder * options_.quadLength))
-                  : component_),
+        part_(options_.sharp == FeatureOptions::Sharp::Trim ? partsBetween(mesh, sharp(kShortestBorder))
+                                                            : component_),
         border_(mesh, bordersBetween(mesh, part_), radians(options.cornerAngle)),
         point_(mesh.n_vertices(), false) {
     for (const auto v : featurePoints) point_[v.idx()] = true;
@@ -83,15 +82,15 @@ class ModelCut {
 
  private:
   std::vector<bool> sharp(double shortest) const {
-    return sharpEdges(mesh_, {.angle = radians(options_.angle), .shortest = shortest});
+    return sharpEdges(
+        mesh_, {.angle = radians(options_.angle), .quadLength = options_.quadLength, .shortest = shortest});
   }
 
   void chooseAligned() {
-    const double shortest = kShortestAligned * options_.quadLength;
-    aligned_ = options_.sharp == FeatureOptions::Sharp::Align ? sharp(shortest)
+    aligned_ = options_.sharp == FeatureOptions::Sharp::Align ? sharp(kShortestAligned)
                                                               : std::vector<bool>(mesh_.n_edges(), false);
-    const auto chosen = chosenEdges(mesh_, model_.curves, curve_, options_.align, shortest);
-    const auto freed = chosenEdges(mesh_, model_.curves, curve_, options_.free, shortest);
+    const auto chosen = chosenEdges(mesh_, model_.curves, curve_, options_.align);
+    const auto freed = chosenEdges(mesh_, model_.curves, curve_, options_.free);
     for (const auto e : mesh_.edges()) {
       const bool byDefault = aligned_[e.idx()] || (options_.alignBoundary && border_.isBorder(e));
       aligned_[e.idx()] = (byDefault || chosen[e.idx()]) && !freed[e.idx()];
@@ -235,8 +234,8 @@ class ModelCut {
   const std::vector<int> component_,
       part_;  ///< by triangle: the smallest one of its component, of its region
   const BorderGraph border_;
-  std::vector<bool> point_;    ///< by vertex: whether it is a feature point
-  std::vector<bool> aligned_;  ///< by edge
+  std::vector<bool> point_;                      ///< by vertex: whether it is a feature point
+  std::vector<bool> aligned_;                    ///< by edge
   std::vector<std::optional<CornerId>> corner_;  ///< by vertex
   std::vector<std::optional<CurveId>> curve_;    ///< by edge
   std::vector<double> parameter_;                ///< by vertex

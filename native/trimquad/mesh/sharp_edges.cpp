@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "trimquad/base/disjoint_sets.h"
 
@@ -13,10 +14,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBlunt = 0.5;                            ///< share of the angle over which a curve goes on
-constexpr double kStraightOn = std::numbers::pi / 4;      ///< largest turn of a curve that goes on
-constexpr double kKink = std::numbers::pi / 3;            ///< largest turn inside one curve
-constexpr double kRounding = 1e-9;                        ///< radians
+constexpr double kBlunt = 0.5;                           ///< share of the angle over which a curve goes on
+constexpr double kStraightOn = std::numbers::pi / 4;     ///< largest turn of a curve that goes on
+constexpr double kKink = std::numbers::pi / 3;           ///< largest turn inside one curve
+constexpr double kSharpAnywhere = std::numbers::pi / 3;  ///< folds over this stand out of anything
+constexpr double kContrast = 2;                          ///< folds stand out of so much smaller ones
+constexpr double kAround =
+    0.8;  ///< share of the edges around that are not on sharp curves where there are any
+constexpr double kWideFacet = 0.5;  ///< quad edges: triangles that high are shape, not sampling
+constexpr double kOpenEnd = 2;      ///< curves that end openly must be so many times longer
+constexpr int kRings = 2;           ///< how many edges around an edge its surroundings reach
+constexpr double kRounding = 1e-9;  ///< radians
 
 Vector3d areaNormal(const SurfaceMesh& mesh, HalfedgeHandle h) {
   const Vector3d &a = mesh.point(mesh.from_vertex_handle(h)), &b = mesh.point(mesh.to_vertex_handle(h)),
@@ -40,8 +48,9 @@ class SharpCurves {
   }
 
   std::vector<bool> run() {
+    if (options_.quadLength > 0 && options_.follow) dropFaint();
     if (options_.follow) followBlunt();
-    if (options_.shortest > 0) dropShort();
+    if (options_.shortest * options_.quadLength > 0) dropShort();
     return std::move(sharp_);
   }
 
@@ -57,11 +66,50 @@ class SharpCurves {
     return out;
   }
 
+  /// Edges that are no sharper than the surface around them bends belong to a curved surface or to noise.
+  void dropFaint() {
+    std::vector<bool> standsOut = sharp_;
+    for (const auto e : mesh_.edges())
+      if (sharp_[e.idx()] && std::abs(fold_[e.idx()]) <= kSharpAnywhere && !betweenWideFacets(e))
+        standsOut[e.idx()] = std::abs(fold_[e.idx()]) >= kContrast * foldAround(e);
+    sharp_ = std::move(standsOut);
+  }
+
+  bool betweenWideFacets(EdgeHandle e) const {
+    for (const int side : {0, 1}) {
+      const auto h = mesh_.halfedge_handle(e, side);
+      const double height = areaNormal(mesh_, h).norm() / mesh_.calc_edge_length(e);
+      if (height < kWideFacet * options_.quadLength) return false;
+    }
+    return true;
+  }
+
+  /// How sharp the edges within a few edges of an edge are, up to the sharpest ones: these are its own curve.
+  double foldAround(EdgeHandle e) const {
+    std::set<VertexHandle> near;
+    for (const int side : {0, 1}) near.insert(mesh_.to_vertex_handle(mesh_.halfedge_handle(e, side)));
+    for (int ring = 0; ring < kRings; ++ring) {
+      std::set<VertexHandle> wider = near;
+      for (const auto v : near)
+        for (const auto w : mesh_.vv_range(v)) wider.insert(w);
+      near = std::move(wider);
+    }
+    std::vector<double> folds;
+    for (const auto v : near)
+      for (const auto h : mesh_.voh_range(v))
+        if (v < mesh_.to_vertex_handle(h) && near.count(mesh_.to_vertex_handle(h)))
+          folds.push_back(std::abs(fold(h)));
+    const auto middle = folds.begin() + long(kAround * double(folds.size()));
+    std::nth_element(folds.begin(), middle, folds.end());
+    return *middle;
+  }
+
   /// Every curve that ends goes on straight ahead as long as the surface bends there.
   void followBlunt() {
     std::vector<HalfedgeHandle> ends;  // arriving
     for (const auto v : mesh_.vertices())
-      if (const auto out = sharpFrom(v); out.size() == 1) ends.push_back(mesh_.opposite_halfedge_handle(out[0]));
+      if (const auto out = sharpFrom(v); out.size() == 1)
+        ends.push_back(mesh_.opposite_halfedge_handle(out[0]));
     for (auto arriving : ends)
       while (const auto further = straightOn(arriving)) {
         sharp_[mesh_.edge_handle(*further).idx()] = true;
@@ -102,7 +150,8 @@ class SharpCurves {
     };
     std::vector<const std::vector<EdgeHandle>*> rest;
     for (const auto& [root, curve] : members) {
-      if (extent(curve) < options_.shortest) {
+      const double wanted = (endsOpenly(curve) ? kOpenEnd : 1) * options_.shortest * options_.quadLength;
+      if (extent(curve) < wanted) {
         rest.push_back(&curve);
         continue;
       }
@@ -115,6 +164,16 @@ class SharpCurves {
     for (const auto* curve : rest)
       if (joins(*curve, onKept)) keep(*curve);
     sharp_ = std::move(kept);
+  }
+
+  /// Whether the curve ends somewhere on the surface instead of meeting others.
+  bool endsOpenly(const std::vector<EdgeHandle>& curve) const {
+    for (const auto e : curve)
+      for (const int side : {0, 1}) {
+        const auto v = mesh_.to_vertex_handle(mesh_.halfedge_handle(e, side));
+        if (!mesh_.is_boundary(v) && sharpFrom(v).size() == 1) return true;
+      }
+    return false;
   }
 
   double extent(const std::vector<EdgeHandle>& curve) const {

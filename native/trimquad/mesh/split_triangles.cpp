@@ -40,8 +40,8 @@ class ConstraintSplit {
     }
     for (const auto e : between) {
       const auto h = mesh.halfedge_handle(e, 0);
-      const Vector3d normal = mesh.calc_face_normal(mesh.face_handle(h)) +
-                              mesh.calc_face_normal(mesh.opposite_face_handle(h));
+      const Vector3d normal =
+          mesh.calc_face_normal(mesh.face_handle(h)) + mesh.calc_face_normal(mesh.opposite_face_handle(h));
       const Vector3d middle =
           0.5 * (mesh.point(mesh.from_vertex_handle(h)) + mesh.point(mesh.to_vertex_handle(h)));
       splitEdge(mesh, e, addVertex(middle, normal, mesh.calc_edge_length(e)), region_.inputTriangle);

@@ -161,8 +161,7 @@ TEST(FeaturePoints, aPointInsideATriangleAnEdgeAndACornerBecomesAVertex) {
 }
 
 TEST(FeaturePoints, aPointOffTheSurfaceIsRefused) {
-  const auto error =
-      errorOf([] { regionOf(flatSheet(4, 4), {.points = {{1, 1, 0.7}}, .quadLength = 1}); });
+  const auto error = errorOf([] { regionOf(flatSheet(4, 4), {.points = {{1, 1, 0.7}}, .quadLength = 1}); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->kind(), Error::Kind::Input);
   EXPECT_TRUE(error->position());

@@ -37,7 +37,7 @@ TEST(SharpEdges, aFoldIsPositiveOverARidgeAndNegativeInAValley) {
 
 TEST(SharpEdges, aCubeHasItsTwelveEdges) {
   EXPECT_EQ(sharpCount(cube(), {.angle = 30 * kDegree}), 12);
-  EXPECT_EQ(sharpCount(cube(), {.angle = 30 * kDegree, .shortest = 0.9}), 12);
+  EXPECT_EQ(sharpCount(cube(), {.angle = 30 * kDegree, .quadLength = 1, .shortest = 0.9}), 12);
   EXPECT_EQ(sharpCount(cube(), {.angle = 91 * kDegree}), 0);
 }
 
@@ -59,17 +59,29 @@ TEST(SharpEdges, spikesAreNoiseAndAnEdgeAmongThemStays) {
   auto soup = fold([](double) { return 60; });
   const auto smooth = soup;
   for (const int j : {2, 6, 10}) soup.points[2 * 13 + j].z() += 0.8;
-  const SharpEdgeOptions all{.angle = 30 * kDegree}, filtered{.angle = 30 * kDegree, .shortest = 4};
+  const SharpEdgeOptions all{.angle = 30 * kDegree},
+      filtered{.angle = 30 * kDegree, .quadLength = 1, .shortest = 4};
   EXPECT_GT(sharpCount(soup, all), 24);
   EXPECT_EQ(sharpCount(soup, filtered), 12);
   EXPECT_EQ(sharpCount(smooth, filtered), 12);
+}
+
+TEST(SharpEdges, theFacetsOfACoarseTubeAreNoEdgesUnlessTheyAreAsWideAsQuads) {
+  constexpr int kFacets = 10;  // 36 degrees each
+  const auto tube = sheet(kFacets - 2, 8, [](double i, double j) {
+    const double a = 2 * std::numbers::pi * i / kFacets;
+    return Eigen::Vector3d(std::cos(a), std::sin(a), 0.6 * j);
+  });
+  EXPECT_GT(sharpCount(tube, {.angle = 30 * kDegree}), 50);
+  EXPECT_EQ(sharpCount(tube, {.angle = 30 * kDegree, .quadLength = 2}), 0);
+  EXPECT_GT(sharpCount(tube, {.angle = 30 * kDegree, .quadLength = 0.5}), 50);
 }
 
 TEST(SharpEdges, aShortEdgeBetweenLongOnesStays) {
   // A bar of 1 x 1 x 10: its ends have edges of length 1.
   auto bar = cube();
   for (auto& p : bar.points) p.z() *= 10;
-  EXPECT_EQ(sharpCount(bar, {.angle = 30 * kDegree, .shortest = 3}), 12);
+  EXPECT_EQ(sharpCount(bar, {.angle = 30 * kDegree, .quadLength = 1, .shortest = 3}), 12);
 }
 
 TEST(FeatureGraph, theCubesEdgesMeetInEightJunctions) {
