@@ -1,6 +1,7 @@
-"""Pictures of a result: the map as a checker on the surface, the quads, the B-spline faces."""
+"""Pictures of a result: the map as a checker on the surface with its singular vertices, the quads, the B-spline faces."""
 import numpy
 
+from .colours import point_colour
 from .error import input_error
 from .freecad_shape import shape_from_bytes
 from .native import load
@@ -13,6 +14,8 @@ FACE_COLOURS = numpy.array([[0.55, 0.68, 0.85], [0.93, 0.76, 0.52], [0.62, 0.80,
                             [0.74, 0.68, 0.86], [0.62, 0.80, 0.82]])
 # Triangles are divided so that the checker's borders look straight: at most so many parts a side, or in all.
 CHECKER_DIVISION, CHECKER_PARTS = 6, 250_000
+LINE_COLOUR = "#1b2a41"
+ALIGNED_COLOUR = "#0a7d3c"
 LIGHT = numpy.array([0.35, -0.45, 0.82])
 
 
@@ -24,9 +27,11 @@ def write_pictures(result, path_of, progress):
         matplotlib.use("Agg")
     except ImportError as error:
         raise input_error("write", f"--write pictures needs matplotlib ({error})") from None
-    maps = [triangles_of_map(r.grid.to_obj()) for r in result.regions if r.grid is not None]
-    if maps:
-        _save(path_of("map.png"), [_checker(*m) for m in maps], [])
+    mapped = [r for r in result.regions if r.map is not None]
+    if mapped:
+        checkers = [_checker(r.map.points[r.map.triangles], r.map.uv) for r in mapped]
+        aligned = [(r.region.points[r.region.aligned], 1.6, ALIGNED_COLOUR) for r in mapped]
+        _save(path_of("map.png"), checkers, aligned, [s for r in mapped for s in r.singularities])
     progress.check()
     polygons = [r.polygons for r in result.regions if r.quads is not None]
     if polygons:
@@ -35,24 +40,6 @@ def write_pictures(result, path_of, progress):
     if result.native_shape is not None:
         faces, lines = _faces(result)
         _save(path_of("nurbs.png"), faces, lines)
-
-
-def triangles_of_map(text):
-    """Corners (m, 3, 3) and their images (m, 3, 2) of the triangles of a gridmap.obj or seamless.obj."""
-    points, images, corners, places = [], [], [], []
-    for line in text.splitlines():
-        words = line.split()
-        if not words:
-            continue
-        if words[0] == "v":
-            points.append([float(w) for w in words[1:4]])
-        elif words[0] == "vt":
-            images.append([float(w) for w in words[1:3]])
-        elif words[0] == "f":
-            pairs = [w.split("/") for w in words[1:4]]
-            corners.append([int(p[0]) - 1 for p in pairs])
-            places.append([int(p[1]) - 1 for p in pairs])
-    return numpy.array(points)[corners], numpy.array(images)[places]
 
 
 def _checker(corners, images):
@@ -81,7 +68,7 @@ def _quads(polygons):
 
 
 def _lines(polygons):
-    return polygons.points[polygons.edges()], 0.5
+    return polygons.points[polygons.edges()], 0.5, LINE_COLOUR
 
 
 def _faces(result):
@@ -97,12 +84,12 @@ def _faces(result):
         faces.append((corners, numpy.tile(FACE_COLOURS[index % len(FACE_COLOURS)], (len(corners), 1))))
     for edge in shape.Edges:
         points = numpy.array([tuple(p) for p in edge.discretize(60)])
-        lines.append((numpy.stack([points[:-1], points[1:]], axis=1), 1.1))
+        lines.append((numpy.stack([points[:-1], points[1:]], axis=1), 1.1, LINE_COLOUR))
     return faces, lines
 
 
-def _save(path, surfaces, lines):
-    """Paint triangles and lines from back to front, in a fixed oblique view."""
+def _save(path, surfaces, lines, singularities=()):
+    """Paint triangles from back to front in a fixed oblique view, and what they do not hide of the lines and points."""
     from matplotlib import figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection, PolyCollection
@@ -123,9 +110,15 @@ def _save(path, surfaces, lines):
     axes.add_collection(
         PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
     )
-    for segments, width in lines:
-        seen = _visible(segments, triangles, view)
-        axes.add_collection(LineCollection((segments @ view[:, :2])[seen], colors="#1b2a41", linewidths=width))
+    for segments, width, colour in lines:
+        seen = _visible(segments.mean(axis=1), triangles, view)
+        axes.add_collection(LineCollection((segments @ view[:, :2])[seen], colors=colour, linewidths=width))
+    if singularities:
+        places = numpy.array([s.position for s in singularities])
+        colours = numpy.array([point_colour(s.index) for s in singularities])
+        seen = _visible(places, triangles, view)
+        x, y = (places @ view[:, :2])[seen].T
+        axes.scatter(x, y, s=26, c=colours[seen], edgecolors="white", linewidths=0.6, zorder=3)
     axes.autoscale_view()
     drawing.savefig(path, metadata={"Software": None})
 
@@ -148,8 +141,8 @@ def _shade(triangles, view):
     return 0.62 + 0.42 * numpy.abs(normals @ light) - 0.08 * ((normals @ view[:, 2]) < 0)
 
 
-def _visible(segments, triangles, view, cells=300):
-    """Which segments no triangle hides: their middles against a depth raster of the triangles."""
+def _visible(places, triangles, view, cells=300):
+    """Which points no triangle hides, by a depth raster of the triangles."""
     low = (triangles @ view[:, :2]).reshape(-1, 2).min(axis=0)
     extent = _extent(triangles)
     size = extent / cells
@@ -158,9 +151,8 @@ def _visible(segments, triangles, view, cells=300):
     raster = numpy.full((cells + 2, cells + 2), -numpy.inf)
     index = ((points @ view[:, :2] - low) / size).astype(int)
     numpy.maximum.at(raster, (index[:, 0], index[:, 1]), points @ view[:, 2])
-    middles = segments.mean(axis=1)
-    index = numpy.clip(((middles @ view[:, :2] - low) / size).astype(int), 0, cells + 1)
-    return middles @ view[:, 2] > raster[index[:, 0], index[:, 1]] - 0.015 * extent
+    index = numpy.clip(((places @ view[:, :2] - low) / size).astype(int), 0, cells + 1)
+    return places @ view[:, 2] > raster[index[:, 0], index[:, 1]] - 0.015 * extent
 
 
 def _extent(triangles):

@@ -61,9 +61,9 @@ SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
       }
   }
   for (const auto& [side, axis] : aligned)
-    TRIMQUAD_ASSERT(basis_.addEquation({{coordinate(wedge(side), axis), 1},
-                                        {coordinate(wedge(mesh.next_halfedge_handle(side)), axis), -1}},
-                                       0));
+    TRIMQUAD_ASSERT(basis_.addEquation(
+        {{coordinate(wedge(side), axis), 1}, {coordinate(wedge(mesh.next_halfedge_handle(side)), axis), -1}},
+        0));
   basis_.finish();
 }
 

@@ -123,8 +123,8 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
     translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
   }
   const SeamBasis basis(mesh, map.seams, translations, map.alignedSides);
-  const Eigen::VectorXd z =
-      solveMap(mesh, map.seams, map.target, map.conformalScale, field.index, basis, "seamless", map.counters, progress);
+  const Eigen::VectorXd z = solveMap(mesh, map.seams, map.target, map.conformalScale, field.index, basis,
+                                     "seamless", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
   // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
   // A tube that is not becomes a plane region, whose map cannot follow the field.
