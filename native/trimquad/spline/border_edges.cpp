@@ -30,14 +30,16 @@ BorderLines::Edge BorderLines::edge(int border) const {
   const auto [low, high] = range_[border];
   Edge result;
   result.reversed = lines[0].along[runs] < 0;
-  const double a = lines[0].at(result.reversed ? high : low)[runs], b = lines[0].at(result.reversed ? low : high)[runs];
+  const double a = lines[0].at(result.reversed ? high : low)[runs],
+               b = lines[0].at(result.reversed ? low : high)[runs];
   const auto& surface = lines[0].sheet->surface;
   const double at = lines[0].start[axis];
   result.edge.curve = restricted(axis == 0 ? surface.curveAtU(at) : surface.curveAtV(at), a, b);
   for (int side : {0, 1})
-    result.onSheet[side] = {1,
-                            {a, a, b, b},
-                            {lines[side].at(result.reversed ? high : low), lines[side].at(result.reversed ? low : high)}};
+    result.onSheet[side] = {
+        1,
+        {a, a, b, b},
+        {lines[side].at(result.reversed ? high : low), lines[side].at(result.reversed ? low : high)}};
   double gap = 0;
   const int samples = kGapSamplesPerSpan * int(surface.knotsU.size() + surface.knotsV.size());
   for (int i = 0; i <= samples; ++i) {

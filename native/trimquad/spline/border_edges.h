@@ -23,9 +23,13 @@ class BorderLines {
 
   /// The border on one of its charts' sheets; s = 0 at its start.
   SheetLine line(int border, int side) const;
-  double endOf(const End& end) const { return end.atStart ? range_[end.border].low : range_[end.border].high; }
+  double endOf(const End& end) const {
+    return end.atStart ? range_[end.border].low : range_[end.border].high;
+  }
   /// Moves an end of a border along it.
-  void setEnd(const End& end, double s) { (end.atStart ? range_[end.border].low : range_[end.border].high) = s; }
+  void setEnd(const End& end, double s) {
+    (end.atStart ? range_[end.border].low : range_[end.border].high) = s;
+  }
 
   /// The border's curve from end to end along increasing parameter of its first chart, and its lines in both
   /// charts with the same parameter.

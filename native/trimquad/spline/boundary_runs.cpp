@@ -110,12 +110,14 @@ std::map<int, std::vector<OutlinePart>> outlineParts(const Layout& layout) {
         const auto& boundary = layout.charts[c].loops[l][s].boundary;
         for (int i = 0; i + 1 < int(boundary.size()); ++i) {
           const auto &p = boundary[i], &q = boundary[i + 1];
-          parts[p.halfedge.idx()].push_back({p.vertex.is_valid() ? 0 : p.part, q.vertex.is_valid() ? 1 : q.part, p.at,
-                                             q.at, c, l, s, i, q.point});
+          parts[p.halfedge.idx()].push_back({p.vertex.is_valid() ? 0 : p.part,
+                                             q.vertex.is_valid() ? 1 : q.part, p.at, q.at, c, l, s, i,
+                                             q.point});
         }
       }
   for (auto& [h, list] : parts)
-    std::sort(list.begin(), list.end(), [](const OutlinePart& a, const OutlinePart& b) { return a.from < b.from; });
+    std::sort(list.begin(), list.end(),
+              [](const OutlinePart& a, const OutlinePart& b) { return a.from < b.from; });
   return parts;
 }
 

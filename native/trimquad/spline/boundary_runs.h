@@ -43,8 +43,8 @@ struct CurveSplit {
 /// left. Throws Error(Stage, "fit") where a boundary edge lies on no curve or a loop has no corner.
 std::vector<BoundaryRun> boundaryRuns(const Model& model, int region, const Chart& chart);
 
-/// The same for a region that is cut into charts; runs end where charts meet. Appends these places to `splits`,
-/// with corner numbers from `corners` on.
+/// The same for a region that is cut into charts; runs end where charts meet. Appends these places to
+/// `splits`, with corner numbers from `corners` on.
 std::vector<BoundaryRun> boundaryRuns(const Model& model, int region, const Layout& layout, int& corners,
                                       std::vector<CurveSplit>& splits);
 

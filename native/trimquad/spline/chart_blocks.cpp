@@ -176,10 +176,18 @@ class Joining {
         auto [it, isNew] = links.try_emplace(neighbour);
         Link& link = it->second;
         if (isNew) link.fromOther = t;
-        link.good = link.good && !graph_.isFeature(h) && link.fromOther == t;
+        link.good = link.good && !graph_.isFeature(h) && !leavesSingularity(h) && link.fromOther == t;
         ++link.sides;
       }
     return links;
+  }
+
+  /// Around a singularity every quarter turn needs a corner of a chart: a chart that went on straight there
+  /// could have no tangent plane.
+  bool leavesSingularity(int h) const {
+    for (const int p : {graph_.overlay().halfedges[h].origin, graph_.overlay().target(h)})
+      if (const int quarters = graph_.quarters(p); quarters != 0 && quarters != 4) return true;
+    return false;
   }
 
   Box boxOf(int chart) const {

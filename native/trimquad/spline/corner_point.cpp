@@ -102,14 +102,17 @@ double placeOnLine(const Eigen::Vector3d& p, const SheetLine& line, double guess
     Eigen::Matrix3d m;
     m << tangent(jet), -there.su, -there.sv;
     const Eigen::Vector3d move = m.partialPivLu().solve(there.s - jet.s);
-    if (!move.allFinite() || std::abs(tangent(jet).normalized().dot(normal(there))) < kSmallestVolume) return nearest;
+    if (!move.allFinite() || std::abs(tangent(jet).normalized().dot(normal(there))) < kSmallestVolume)
+      return nearest;
     s += move[0];
     x += move.tail<2>();
     if (!other->holds(x) || !line.sheet->holds(line.at(s))) return nearest;
     if (move.cwiseAbs().maxCoeff() < 1e-14) break;
   }
   const Eigen::Vector3d found = line.sheet->jet(line.at(s)).s;
-  return (found - other->jet(x).s).norm() < 1e-12 * std::max(1.0, p.norm()) && (found - p).norm() < reach ? s : nearest;
+  return (found - other->jet(x).s).norm() < 1e-12 * std::max(1.0, p.norm()) && (found - p).norm() < reach
+             ? s
+             : nearest;
 }
 
 }  // namespace trimquad

@@ -62,12 +62,16 @@ std::vector<std::vector<BorderSide>> borderSides(const Layout& layout) {
     for (int side : {0, 1}) {
       const Eigen::Vector2d along = (border.end[side] - border.start[side]) / border.length();
       const Eigen::Vector2d left(-along[1], along[0]);
-      result[border.chart[side]].push_back({&border, side, border.start[side], along,
-                                            side == 0 ? left : Eigen::Vector2d(-left), border.length(),
-                                            side == 0 ? border.across : border.across.inverse(),
-                                            border.chart[1 - side],
-                                            {layout.points[border.startPoint].inner(),
-                                             layout.points[border.endPoint].inner()}});
+      result[border.chart[side]].push_back(
+          {&border,
+           side,
+           border.start[side],
+           along,
+           side == 0 ? left : Eigen::Vector2d(-left),
+           border.length(),
+           side == 0 ? border.across : border.across.inverse(),
+           border.chart[1 - side],
+           {layout.points[border.startPoint].inner(), layout.points[border.endPoint].inner()}});
     }
   return result;
 }
@@ -83,7 +87,8 @@ class LayoutFit {
         sides_(borderSides(layout)),
         space_(layout),
         source_(region, map, layout, progress) {
-    for (int c = 0; c < int(layout.charts.size()); ++c) space_.charts.push_back(initialSpace(c, options.degree));
+    for (int c = 0; c < int(layout.charts.size()); ++c)
+      space_.charts.push_back(initialSpace(c, options.degree));
     const double quad = std::sqrt(surfaceArea(map.mesh) / source_.mapArea());
     const double inQuads = tolerance_ / quad;
     fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
@@ -118,17 +123,14 @@ class LayoutFit {
     const double room = std::max(0.5, 0.01 * extent.maxCoeff()), span = std::max(1.0, extent.maxCoeff() / 2);
     SplineLine lines[2];
     for (int axis = 0; axis < 2; ++axis) {
-      const auto needsRoom = [&](bool high) {
-        if (chart.boundaryLow[axis] > chart.boundaryHigh[axis]) return false;
-        return high ? chart.boundaryHigh[axis] > chart.high[axis] - room
-                    : chart.boundaryLow[axis] < chart.low[axis] + room;
-      };
-      const double low = needsRoom(false) ? std::floor(chart.low[axis] - room) : std::floor(chart.low[axis]);
-      const double high = needsRoom(true) ? std::ceil(chart.high[axis] + room) : std::ceil(chart.high[axis]);
+      const double low = std::floor(chart.low[axis] - (needsRoom(c, axis, chart.low[axis], room) ? room : 0));
+      const double high =
+          std::ceil(chart.high[axis] + (needsRoom(c, axis, chart.high[axis], room) ? room : 0));
       std::set<double> fixed{low, high};
       for (const auto& side : sides_[c])
         for (const double s : {0.0, side.length})
-          if (side.endsInside[s > 0] || side.along[axis] == 0) fixed.insert((side.start + s * side.along)[axis]);
+          if (side.endsInside[s > 0] || side.along[axis] == 0)
+            fixed.insert((side.start + s * side.along)[axis]);
       lines[axis].degree = degree;
       for (auto at = fixed.begin(); std::next(at) != fixed.end(); ++at) {
         const double a = *at, b = *std::next(at);
@@ -138,6 +140,23 @@ class LayoutFit {
       lines[axis].breaks.push_back(high);
     }
     return {lines[0], lines[1]};
+  }
+
+  /// Whether the surface's boundary comes close to that side of the chart's bounding box, where no border
+  /// lies on it.
+  bool needsRoom(int c, int axis, double at, double room) const {
+    const auto isBehindBorder = [&](const Eigen::Vector2d& x) {
+      return std::any_of(sides_[c].begin(), sides_[c].end(), [&](const BorderSide& side) {
+        if (side.along[axis] != 0 || side.start[axis] != at) return false;
+        const double s = (x - side.start).dot(side.along);
+        return s > -room && s < side.length + room;
+      });
+    };
+    for (const auto& loop : layout_.charts[c].loops)
+      for (const auto& stretch : loop)
+        for (const auto& p : stretch.boundary)
+          if (std::abs(p.at[axis] - at) < room && !isBehindBorder(p.at)) return true;
+    return false;
   }
 
   void makeSamples() {
@@ -172,30 +191,35 @@ class LayoutFit {
     Place at{from.chart, result_.surfaces[from.chart].footPoint(p, from.parameter)};
     start = from;
     for (int hop = 0; hop < kMaxHops; ++hop) {
-      const BorderSide* crossed = nullptr;
-      double deepest = -kOnLine;
-      bool beyond = false;
+      struct Crossing {
+        Place start, at;
+        double distance;
+        bool beyond;
+      };
+      std::optional<Crossing> best;
       for (const auto& side : sides_[at.chart]) {
         const double depth = (at.parameter - side.start).dot(side.inward);
         const double before = (start.parameter - side.start).dot(side.inward);
         if (depth > kOnLine || before < -kOnLine) continue;
         // Where the way from the start meets the line.
         const double part = before - depth > kOnLine ? before / (before - depth) : 1;
-        const double s = (start.parameter + part * (at.parameter - start.parameter) - side.start).dot(side.along);
+        const double s =
+            (start.parameter + part * (at.parameter - start.parameter) - side.start).dot(side.along);
         const double low = side.endsInside[0] ? 0 : -0.5, high = side.length + (side.endsInside[1] ? 0 : 0.5);
         if (s < low - kOnLine || s > high + kOnLine) continue;
-        if (!crossed || depth < deepest) {
-          crossed = &side;
-          deepest = depth;
-          beyond = depth < -kOnLine;
-        }
+        const Eigen::Vector2d guess = Layout::apply(side.over, layout_.scale, at.parameter);
+        const Place next{side.neighbour, result_.surfaces[side.neighbour].footPoint(p, guess)};
+        const Crossing crossing{{side.neighbour, Layout::apply(side.over, layout_.scale, start.parameter)},
+                                next,
+                                distance(next),
+                                depth < -kOnLine};
+        if (!best || (crossing.beyond && !best->beyond) ||
+            (crossing.beyond == best->beyond && crossing.distance < best->distance))
+          best = crossing;
       }
-      if (!crossed) break;
-      const Place guess{crossed->neighbour, Layout::apply(crossed->over, layout_.scale, at.parameter)};
-      const Place next{guess.chart, result_.surfaces[guess.chart].footPoint(p, guess.parameter)};
-      if (!beyond && !(distance(next) < distance(at) * (1 - 1e-9))) break;
-      start = {guess.chart, Layout::apply(crossed->over, layout_.scale, start.parameter)};
-      at = next;
+      if (!best || (!best->beyond && !(best->distance < distance(at) * (1 - 1e-9)))) break;
+      start = best->start;
+      at = best->at;
     }
     return at;
   }
@@ -335,8 +359,7 @@ class LayoutFit {
                      s = (x.parameter - side.start).dot(side.along);
         if (s < 0 || s > side.length || depth < -kOnLine) continue;
         if (depth > over.width(over.spanOf((x.parameter - (depth - 1e-6) * side.inward)[1 - runs]))) continue;
-        const Eigen::Vector2d there =
-            Layout::apply(side.over, layout_.scale, side.start + s * side.along);
+        const Eigen::Vector2d there = Layout::apply(side.over, layout_.scale, side.start + s * side.along);
         const int axis = side.over.rotation % 2 == 0 ? runs : 1 - runs;
         const auto& neighbour = space_.charts[side.neighbour];
         const SplineLine& theirs = axis == 0 ? neighbour.u : neighbour.v;
@@ -388,13 +411,13 @@ class LayoutFit {
     const std::string poles = std::to_string(space_.poles());
     if (best_ <= tolerance_)
       return stageError("fit",
-                        "the surface folds over wherever it keeps the tolerance " + shortNumber(tolerance_) + " (" +
-                            poles + " poles); use a smaller edge length, or cut the region there",
+                        "the surface folds over wherever it keeps the tolerance " + shortNumber(tolerance_) +
+                            " (" + poles + " poles); use a smaller edge length, or cut the region there",
                         region_.name, where);
     return stageError("fit",
-                      "the tolerance " + shortNumber(tolerance_) + " cannot be met, the surfaces come within " +
-                          shortNumber(best_) + " with " + poles +
-                          " poles; allow a larger tolerance or use a smaller edge length",
+                      "the tolerance " + shortNumber(tolerance_) +
+                          " cannot be met, the surfaces come within " + shortNumber(best_) + " with " +
+                          poles + " poles; allow a larger tolerance or use a smaller edge length",
                       region_.name, where);
   }
 

@@ -18,8 +18,8 @@ struct FitOptions {
 struct FittedSurface {
   Chart chart;
   SplineSurface surface;
-  std::optional<Layout> layout;         ///< where there are several charts; then `chart` and `surface` are empty
-  std::vector<SplineSurface> surfaces;  ///< by chart of the layout
+  std::optional<Layout> layout;  ///< where there are several charts; then `chart` and `surface` are empty
+  std::vector<SplineSurface> surfaces;        ///< by chart of the layout
   double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
   int rounds = 0;
 };

@@ -9,15 +9,16 @@
 namespace trimquad {
 namespace {
 
-/// Weight of exact conditions in the quadratic, relative to the data: each step of the multipliers leaves
-/// about this part the smaller.
-constexpr double kExactWeight = 1e4;
-constexpr int kMaxMultiplierSteps = 20;
+/// Weight of exact conditions in the quadratic, relative to the data.
+constexpr double kExactWeight = 100;
+constexpr int kMaxMultiplierSteps = 100;
 /// Violations of exact conditions that are left, relative to the extent of the data.
 constexpr double kRounding = 1e-13;
 /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
 /// quad^2 of surface.
-constexpr double kTangentWeight = 1;
+constexpr double kTangentWeight = 3;
+/// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
+constexpr double kTangentReach = 2;
 constexpr double kBeyondBoundary = 0.5;  ///< quads
 constexpr double kSame = 1e-9;           ///< quads
 
@@ -112,7 +113,8 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
     for (const double s : breaks[k])
       if (s > low + kSame && s < high - kSame) ends.push_back(s);
   std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kSame; }), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kSame; }),
+             ends.end());
 
   // How far the influence of a singularity at an end reaches, and the cosine of the angle between
   // neighbouring lines there once the surface is flattened.
@@ -122,7 +124,7 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
       double first = length;
       for (const double s : breaks[k]) {
         const double away = atStart ? s : length - s;
-        if (away > kSame) first = std::min(first, away);
+        if (away > std::min(kTangentReach, length / 2) - kSame) first = std::min(first, away);
       }
       farthest = std::max(farthest, first);
     }
@@ -134,9 +136,10 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
   const auto cosine = [](const Layout::Point& p) { return std::cos(2 * M_PI / p.quarters); };
   const auto tangentFactor = [&](double s) {
     double c = 0;
-    if (s < reachStart) c += cosine(startPoint) * std::pow(1 - s / reachStart, 2);
+    if (reachStart > 0 && s < reachStart) c += cosine(startPoint) * std::pow(1 - s / reachStart, 2);
     // There the direction along the border points towards the singularity.
-    if (length - s < reachEnd) c -= cosine(endPoint) * std::pow(1 - (length - s) / reachEnd, 2);
+    if (reachEnd > 0 && length - s < reachEnd)
+      c -= cosine(endPoint) * std::pow(1 - (length - s) / reachEnd, 2);
     return c;
   };
   const auto acrossAt = [&](double s, double factor) {
@@ -149,7 +152,8 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
     return condition;
   };
 
-  const int points = std::max({space[0]->u.degree, space[0]->v.degree, space[1]->u.degree, space[1]->v.degree}) + 1;
+  const int points =
+      std::max({space[0]->u.degree, space[0]->v.degree, space[1]->u.degree, space[1]->v.degree}) + 1;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double width = (ends[i + 1] - ends[i]) / points;
     for (int k = 0; k < points; ++k) {
@@ -159,7 +163,7 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
       side[1].append(border.start[1] + s * along1, 0, 0, -1, equal.terms);
       conditions.push_back(std::move(equal));
       if (border.feature) continue;
-      const bool near = s < reachStart || length - s < reachEnd;
+      const bool near = (reachStart > 0 && s < reachStart) || (reachEnd > 0 && length - s < reachEnd);
       Condition smooth = acrossAt(s, tangentFactor(s));
       smooth.weight = (near ? kTangentWeight : kExactWeight) * width;
       smooth.exact = !near;
@@ -176,6 +180,41 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
     }
 }
 
+/// Moves the minimum of the quadratic to its minimum subject to the exact conditions. The quadratic contains
+/// them as penalties, so that the system for their multipliers is well conditioned but for few directions:
+/// conjugate gradients, a solve each.
+Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
+                                        Eigen::MatrixXd x, double rounding, const Progress& progress) {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> weights;
+  for (const auto& condition : conditions) {
+    if (!condition.exact) continue;
+    for (const auto& [i, a] : condition.terms) entries.emplace_back(int(weights.size()), i, a);
+    weights.push_back(condition.weight);
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows(int(weights.size()), x.rows());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::Map<const Eigen::ArrayXd> weight(weights.data(), Eigen::Index(weights.size()));
+
+  Eigen::MatrixXd r = rows * x, z = weight.matrix().asDiagonal() * r, p = z;
+  Eigen::RowVector3d size = r.cwiseProduct(z).colwise().sum();
+  for (int step = 0; step < kMaxMultiplierSteps && r.size() && r.cwiseAbs().maxCoeff() > rounding; ++step) {
+    progress.check();
+    const Eigen::MatrixXd move = solver.solve(rows.transpose() * p), q = rows * move;
+    Eigen::RowVector3d by = p.cwiseProduct(q).colwise().sum();
+    for (int k = 0; k < 3; ++k) by[k] = by[k] > 0 ? size[k] / by[k] : 0;
+    x -= move * by.asDiagonal();
+    r -= q * by.asDiagonal();
+    z = weight.matrix().asDiagonal() * r;
+    const Eigen::RowVector3d now = r.cwiseProduct(z).colwise().sum();
+    for (int k = 0; k < 3; ++k) by[k] = size[k] > 0 ? now[k] / size[k] : 0;
+    p = z + p * by.asDiagonal();
+    size = now;
+    if (step % 10 == 9) r = rows * x;  // against rounding
+  }
+  return x;
+}
+
 std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
   std::vector<Condition> result;
   const auto offset = offsets();
@@ -183,9 +222,8 @@ std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
   return result;
 }
 
-std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(const std::vector<std::vector<Datum>>& data,
-                                                                    const Fairness& fairness,
-                                                                    const Progress& progress) const {
+std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
+    const std::vector<std::vector<Datum>>& data, const Fairness& fairness, const Progress& progress) const {
   const auto offset = offsets();
   const int unknowns = offset.back();
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -213,21 +251,7 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(const std::v
   if (!solver.tryFactorize(matrix)) return {};
   progress.check();
 
-  Eigen::MatrixXd x = solver.solve(rhs);
-  for (int step = 0; step < kMaxMultiplierSteps; ++step) {
-    progress.check();
-    double largest = 0;
-    for (const auto& row : rows) {
-      if (!row.exact) continue;
-      Eigen::RowVector3d off = Eigen::RowVector3d::Zero();
-      for (const auto& [i, a] : row.terms) off += a * x.row(i);
-      largest = std::max(largest, off.lpNorm<Eigen::Infinity>());
-      // The multiplier of the condition grows by weight * off.
-      for (const auto& [i, a] : row.terms) rhs.row(i) -= (row.weight * a) * off;
-    }
-    if (!(largest > kRounding * extent)) break;
-    x = solver.solve(rhs);
-  }
+  const Eigen::MatrixXd x = satisfying(rows, solver, solver.solve(rhs), kRounding * extent, progress);
 
   std::vector<SplineSurface> surfaces;
   for (std::size_t c = 0; c < charts.size(); ++c) {

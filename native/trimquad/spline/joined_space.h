@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "trimquad/base/sparse_solver.h"
 #include "trimquad/spline/layout.h"
 #include "trimquad/spline/spline_space.h"
 
@@ -20,9 +21,9 @@ class JoinedSpace {
   /// The spline surfaces that minimise the sum over all charts of what SplineSpace::leastSquares minimises,
   /// subject to: both sides of a border have the same curve, whatever their knots; they have the same
   /// derivatives across it (in the common chart) away from singularities and off feature lines. Next to a
-  /// singularity, within the first knot interval, the derivatives of both sides across the border and the
+  /// singularity, within about a quad, the derivatives of both sides across the border and the
   /// one along it become linearly dependent, exactly in the singularity and by weighted least squares beyond.
-  /// The conditions hold up to rounding (augmented Lagrangian).
+  /// The conditions hold up to rounding (multipliers).
   ///
   /// Beyond the surface's boundary borders go on for half a quad, for trims that leave the region.
   /// \param data by chart. Empty where data and fairness do not determine the surfaces.
@@ -36,6 +37,8 @@ class JoinedSpace {
     double weight;
     bool exact;
   };
+  static Eigen::MatrixXd satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
+                                    Eigen::MatrixXd x, double rounding, const Progress& progress);
   std::vector<int> offsets() const;
   std::vector<Condition> conditions() const;
   void addBorder(const Layout::Border& border, const std::vector<int>& offset,

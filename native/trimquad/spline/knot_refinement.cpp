@@ -11,15 +11,14 @@ constexpr double kTakesPart = 0.4;
 
 /// By knot rectangle: how much the residual varies along u and v, squared, for a step of one interval.
 template <class Difference>
-std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space, const std::vector<SurfaceSample>& samples,
+std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space,
+                                              const std::vector<SurfaceSample>& samples,
                                               const std::vector<std::array<int, 3>>& cells,
                                               const Difference& difference) {
   std::vector<Eigen::Array2d> variation(size_t(space.u.spans()) * space.v.spans(), Eigen::Array2d::Zero());
   for (const auto& cell : cells) {
-    const SurfaceSample &p = samples[cell[0]], &q = samples[cell[1]],
-                        &r = samples[cell[2]];
-    const Eigen::Vector2d a = difference(p.parameter, q.parameter),
-                          b = difference(p.parameter, r.parameter);
+    const SurfaceSample &p = samples[cell[0]], &q = samples[cell[1]], &r = samples[cell[2]];
+    const Eigen::Vector2d a = difference(p.parameter, q.parameter), b = difference(p.parameter, r.parameter);
     const double area = a.x() * b.y() - a.y() * b.x();
     if (!(area > 0)) continue;
     const double da = q.distance - p.distance, db = r.distance - p.distance;
@@ -75,7 +74,8 @@ bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
   const auto difference = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
     return samples.difference(from, to);
   };
-  return refine(space, residualVariation(space, samples.samples, samples.cells(), difference), failing, narrowest);
+  return refine(space, residualVariation(space, samples.samples, samples.cells(), difference), failing,
+                narrowest);
 }
 
 bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,

@@ -68,7 +68,8 @@ int LayoutSamples::latticeOrder(FaceHandle f, const JoinedSpace& space) const {
       const SplineLine& line = axis == 0 ? space.charts[piece.chart].u : space.charts[piece.chart].v;
       const auto [low, high] = std::minmax({x[0][axis], x[1][axis], x[2][axis]});
       double narrowest = line.width(line.spanOf(low));
-      for (int i = line.spanOf(low); i <= line.spanOf(high); ++i) narrowest = std::min(narrowest, line.width(i));
+      for (int i = line.spanOf(low); i <= line.spanOf(high); ++i)
+        narrowest = std::min(narrowest, line.width(i));
       order = std::max(order, std::ceil(kSamplesAcrossSpan * (high - low) / narrowest));
     }
   }
@@ -108,7 +109,8 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
   return s;
 }
 
-std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool control, const Progress& progress) {
+std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool control,
+                                              const Progress& progress) {
   const auto& mesh = map_.mesh;
   std::vector<LayoutSample> samples;
   cells_.clear();
@@ -156,7 +158,8 @@ std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool con
       }
     }
     const auto addCell = [&](int i, int j, int k) {
-      if (samples[i].chart == samples[j].chart && samples[j].chart == samples[k].chart) cells_.push_back({i, j, k});
+      if (samples[i].chart == samples[j].chart && samples[j].chart == samples[k].chart)
+        cells_.push_back({i, j, k});
     };
     if (control) continue;
     for (int i = 0, row = first; i < q && inside; row += q - i, ++i)
@@ -166,7 +169,8 @@ std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool con
       const auto &p = samples[vertices[0]].parameter, &r = samples[vertices[1]].parameter,
                  &t = samples[vertices[2]].parameter;
       const double turn = (r - p)[0] * (t - p)[1] - (r - p)[1] * (t - p)[0];
-      if (turn > 0 && std::abs(turn - (a.x() * b.y() - a.y() * b.x())) < 1e-6) addCell(vertices[0], vertices[1], vertices[2]);
+      if (turn > 0 && std::abs(turn - (a.x() * b.y() - a.y() * b.x())) < 1e-6)
+        addCell(vertices[0], vertices[1], vertices[2]);
     }
   }
   return samples;

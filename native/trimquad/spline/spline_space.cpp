@@ -193,7 +193,8 @@ void SplineSpace::forEachRectangle(const std::vector<Datum>& data, const Fairnes
         for (int b = 0; b < nv; ++b)
           for (int a = 0; a < nu; ++a) value[a + nu * b] = bu.value[0][a] * bv.value[0][b];
         local.selfadjointView<Eigen::Lower>().rankUpdate(value, d.weight);
-        for (int x = 0; x < nu * nv; ++x) localRhs.row(x) += d.weight * value[x] * (d.point - middle).transpose();
+        for (int x = 0; x < nu * nv; ++x)
+          localRhs.row(x) += d.weight * value[x] * (d.point - middle).transpose();
       }
       local.triangularView<Eigen::StrictlyUpper>() = local.transpose();
       emit(i, j, local, localRhs);
@@ -210,11 +211,12 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
   // Rounding is relative to the coordinates, so they are taken from the middle of the data.
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const auto& d : data) middle += d.point / double(data.size());
-  forEachRectangle(data, fairness, middle, &progress, [&](int i, int j, const auto& local, const auto& localRhs) {
-    const LocalUnknowns unknowns(*this, number, i, j);
-    unknowns.add(local, matrix);
-    for (int x = 0; x < unknowns.count; ++x) rhs.row(unknowns.index[x]) += localRhs.row(x);
-  });
+  forEachRectangle(data, fairness, middle, &progress,
+                   [&](int i, int j, const auto& local, const auto& localRhs) {
+                     const LocalUnknowns unknowns(*this, number, i, j);
+                     unknowns.add(local, matrix);
+                     for (int x = 0; x < unknowns.count; ++x) rhs.row(unknowns.index[x]) += localRhs.row(x);
+                   });
   if (!matrix.factorize(progress)) return {};
   matrix.solveInPlace(rhs);
   rhs.rowwise() += middle.transpose();
@@ -223,16 +225,18 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
 
 void SplineSpace::addNormalEquations(const std::vector<Datum>& data, const Fairness& fairness,
                                      const Eigen::Vector3d& middle, int offset,
-                                     std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& rhs) const {
+                                     std::vector<Eigen::Triplet<double>>& entries,
+                                     Eigen::MatrixXd& rhs) const {
   TRIMQUAD_ASSERT(!u.closed && !v.closed);
-  forEachRectangle(data, fairness, middle, nullptr, [&](int i, int j, const auto& local, const auto& localRhs) {
-    const int nu = u.degree + 1, n = nu * (v.degree + 1);
-    const auto index = [&](int x) { return offset + i + x % nu + u.unknowns() * (j + x / nu); };
-    for (int y = 0; y < n; ++y) {
-      rhs.row(index(y)) += localRhs.row(y);
-      for (int x = y; x < n; ++x) entries.emplace_back(index(x), index(y), local(x, y));
-    }
-  });
+  forEachRectangle(
+      data, fairness, middle, nullptr, [&](int i, int j, const auto& local, const auto& localRhs) {
+        const int nu = u.degree + 1, n = nu * (v.degree + 1);
+        const auto index = [&](int x) { return offset + i + x % nu + u.unknowns() * (j + x / nu); };
+        for (int y = 0; y < n; ++y) {
+          rhs.row(index(y)) += localRhs.row(y);
+          for (int x = y; x < n; ++x) entries.emplace_back(index(x), index(y), local(x, y));
+        }
+      });
 }
 
 }  // namespace trimquad

@@ -110,7 +110,8 @@ class ModelTrimmer {
   void placeInnerPoints();
   int layoutPoint(const CornerUse& use) const;
 
-  PieceLoop borderPiece(int region, const Layout::Stretch& stretch, const std::vector<SplineEdgeId>& edges) const;
+  PieceLoop borderPiece(int region, const Layout::Stretch& stretch,
+                        const std::vector<SplineEdgeId>& edges) const;
   void appendShells(SplineModel& result) const;
 
   const Model& model_;
@@ -119,14 +120,14 @@ class ModelTrimmer {
   const Progress& progress_;
   DisjointSets corners_;
   std::vector<Sheet> sheets_;
-  std::vector<int> sheetRegion_, firstSheet_;       ///< by sheet; by region
+  std::vector<int> sheetRegion_, firstSheet_;        ///< by sheet; by region
   std::vector<std::optional<BorderLines>> borders_;  ///< by region, where it has several charts
-  std::vector<BoundaryRun> runs_;                   ///< region by region, in the order of their loops
+  std::vector<BoundaryRun> runs_;                    ///< region by region, in the order of their loops
   std::optional<CurvePieces> curvePieces_;
-  std::map<int, CurveWithSides> curves_;  ///< by piece
-  std::vector<CornerUse> uses_;           ///< ascending
-  std::vector<CornerPoint> vertices_;     ///< by group
-  std::map<std::pair<int, int>, int> vertexOfPoint_;  ///< by region and point of its layout: group
+  std::map<int, CurveWithSides> curves_;                     ///< by piece
+  std::vector<CornerUse> uses_;                              ///< ascending
+  std::vector<CornerPoint> vertices_;                        ///< by group
+  std::map<std::pair<int, int>, int> vertexOfPoint_;         ///< by region and point of its layout: group
   std::vector<std::vector<BorderLines::Edge>> borderEdges_;  ///< by region
 };
 
@@ -211,7 +212,8 @@ void ModelTrimmer::collectRuns() {
   curvePieces_.emplace(model_, splits);
   const auto tooShort = [&](const BoundaryRun& run) {
     double length = 0;
-    for (std::size_t i = 0; i + 1 < run.points.size(); ++i) length += (run.points[i] - run.points[i + 1]).norm();
+    for (std::size_t i = 0; i + 1 < run.points.size(); ++i)
+      length += (run.points[i] - run.points[i + 1]).norm();
     return length < kShortestEdge;
   };
   for (const auto& run : runs_)
@@ -224,7 +226,8 @@ void ModelTrimmer::collectRuns() {
 
 void ModelTrimmer::placeCorners() {
   for (const auto& run : runs_) {
-    uses_.push_back({cornerOf(run.start), sheetOf(run), run.start.vertex, run.points.front(), run.uv.front(), {}});
+    uses_.push_back(
+        {cornerOf(run.start), sheetOf(run), run.start.vertex, run.points.front(), run.uv.front(), {}});
     uses_.push_back({cornerOf(run.end), sheetOf(run), run.end.vertex, run.points.back(), run.uv.back(), {}});
   }
   std::sort(uses_.begin(), uses_.end(),
@@ -284,8 +287,8 @@ int ModelTrimmer::layoutPoint(const CornerUse& use) const {
   return -1;
 }
 
-/// The vertex for uses of one corner. Where one border between charts ends in it, on the border's curve; where
-/// several do, at their common end in the grid.
+/// The vertex for uses of one corner. Where one border between charts ends in it, on the border's curve;
+/// where several do, at their common end in the grid.
 CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
   const Eigen::Vector3d p = uses_[members.front()].point;
   std::vector<const Sheet*> sheets;
@@ -354,7 +357,7 @@ void ModelTrimmer::placeInnerPoints() {
 }
 
 PieceLoop ModelTrimmer::borderPiece(int region, const Layout::Stretch& stretch,
-                                     const std::vector<SplineEdgeId>& edges) const {
+                                    const std::vector<SplineEdgeId>& edges) const {
   const auto& edge = borderEdges_[region][*stretch.border];
   const bool forward = stretch.forward != edge.reversed;
   return {{{edges[*stretch.border], forward, edge.onSheet[stretch.forward ? 0 : 1]},
@@ -444,7 +447,8 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
         auto& loop = loops.emplace_back();
         for (int k = 0; k < int(charts[c].loops[l].size()); ++k) {
           const auto& stretch = charts[c].loops[l][k];
-          const auto part = stretch.border ? borderPiece(r, stretch, edges) : stretches[{firstSheet_[r] + c, l, k}];
+          const auto part =
+              stretch.border ? borderPiece(r, stretch, edges) : stretches[{firstSheet_[r] + c, l, k}];
           loop.insert(loop.end(), part.begin(), part.end());
         }
       }
