@@ -17,6 +17,7 @@ namespace trimquad {
 namespace {
 
 constexpr double kSmallestTolerance = 1e-7;
+constexpr double kSheetSlack = 0.5;  ///< quads
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
 
@@ -136,7 +137,7 @@ void ModelTrimmer::makeSheets() {
     firstSheet_.push_back(int(sheets_.size()));
     const FittedSurface* fit = fitted_[r];
     if (fit && fit->layout) {
-      for (const auto& surface : fit->surfaces) sheets_.push_back({surface, {}});
+      for (const auto& surface : fit->surfaces) sheets_.push_back({surface, {}, kSheetSlack});
     } else if (fit) {
       auto& sheet = sheets_.emplace_back();
       sheet.surface = fit->surface;
@@ -460,7 +461,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
     for (const auto& loop : face.loops)
       for (const auto& coedge : loop) {
         const SplineEdge& edge = result.edges[coedge.edge.index];
-        const Sheet sheet{face.surface, {}};
+
         for (const bool atStart : {true, false}) {
           SplineVertex& vertex = result.vertices[(atStart ? edge.start : edge.end).index];
           const Eigen::Vector3d inSpace = atStart ? edge.curve.poles.front() : edge.curve.poles.back();

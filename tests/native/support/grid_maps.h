@@ -38,18 +38,37 @@ inline void bend(GridMap& map, const std::function<Eigen::Vector3d(const Eigen::
   for (const auto v : map.mesh.vertices()) map.mesh.set_point(v, place(map.mesh.point(v)));
 }
 
-/// A mesh model of one region with a given map: the map's mesh as the input.
-inline Model modelOf(const SurfaceMesh& mesh) {
+/// The map of an input mesh on a region that consists of its first triangles, or of all.
+inline GridMap mapOn(const Region& region, const GridMap& map) {
+  GridMap result;
+  result.mesh = region.mesh;
+  result.scale = map.scale;
+  result.corner.resize(region.mesh.n_halfedges());
+  for (const auto f : region.mesh.faces()) {
+    const auto h = region.mesh.halfedge_handle(f);
+    HalfedgeHandle from = map.mesh.halfedge_handle(FaceHandle(region.inputTriangle[f.idx()]));
+    while (map.mesh.point(map.mesh.from_vertex_handle(from)) !=
+           region.mesh.point(region.mesh.from_vertex_handle(h)))
+      from = map.mesh.next_halfedge_handle(from);
+    HalfedgeHandle to = h;
+    for (int k = 0; k < 3; ++k) {
+      result.corner[to.idx()] = map.corner[from.idx()];
+      to = region.mesh.next_halfedge_handle(to);
+      from = map.mesh.next_halfedge_handle(from);
+    }
+  }
+  return result;
+}
+
+inline TriangleSoup soupOf(const SurfaceMesh& mesh) {
   TriangleSoup soup;
   for (const auto v : mesh.vertices()) soup.points.push_back(mesh.point(v));
   for (const auto f : mesh.faces()) {
-    std::array<int, 3> t;
+    auto& t = soup.triangles.emplace_back();
     int k = 0;
     for (const auto v : mesh.fv_range(f)) t[k++] = v.idx();
-    soup.triangles.push_back(t);
   }
-  MeshModelOptions options;
-  return meshModel(soup, options, Progress());
+  return soup;
 }
 
 }  // namespace trimquad::sample
