@@ -26,14 +26,14 @@ TRIANGLES_PER_EDGE = 3
 class RegionResult:
     """What became of one region. Stages that were not reached are None; `error` says why.
 
-    name, region (its triangles), field, seamless, grid, quads, fitted: values of the compiled stages;
+    name, region (its triangles), field, seamless, tmesh, quantization, grid, quads, fitted: values of the compiled stages;
     seconds: stage name -> seconds.
     """
 
     def __init__(self, region):
         self.name = region.name
         self.region = region
-        self.field = self.seamless = self.grid = self.quads = self.fitted = self.error = None
+        self.field = self.seamless = self.tmesh = self.quantization = self.grid = self.quads = self.fitted = self.error = None
         self.refits = 0
         self.seconds = {}
 
@@ -172,6 +172,8 @@ def _map_region(item, result, progress):
     try:
         item.field = run("field", native.cross_field, item.region)
         item.seamless = run("seamless", native.seamless_map, item.region, item.field, options.edge_length)
+        item.tmesh = run("partition", native.partition, item.seamless)
+        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
         item.grid = run("optimize", native.grid_map, item.seamless)
         item.quads = run("extract", native.extract_quads, item.grid, item.region)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
