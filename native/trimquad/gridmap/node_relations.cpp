@@ -1,6 +1,6 @@
 #include "trimquad/gridmap/node_relations.h"
 
-#include <map>
+#include <string>
 
 #include "trimquad/base/error.h"
 
@@ -92,8 +92,7 @@ class NodeRelations {
   HalfedgeHandle cornerAt(VertexHandle v) const {
     for (const auto h : mesh_.voh_range(v))
       if (!mesh_.is_boundary(h)) return h;
-    TRIMQUAD_ASSERT(false);
-    return {};
+    throw stageError("optimize", "a vertex without a triangle", "vertex " + std::to_string(v.idx()));
   }
 
   /// The triangle in whose chart the node's coordinates are.
@@ -130,8 +129,7 @@ class NodeRelations {
     for (const auto& side : tmesh_[segment.patch].sides) loop.insert(loop.end(), side.begin(), side.end());
     for (size_t k = 0; k < loop.size(); ++k)
       if (loop[k] == segment.virtualArcs.front()) return loop[(k + loop.size() - 1) % loop.size()];
-    TRIMQUAD_ASSERT(false);
-    return {};
+    throw stageError("optimize", "a virtual arc that its patch does not have");
   }
 
   void relateAcross(const TMesh::RedSegment& segment) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "trimquad/base/constraint_basis.h"
+#include "trimquad/base/fixed.h"
 #include "trimquad/field/cross_field.h"
 #include "trimquad/seamless/seam_graph.h"
 
