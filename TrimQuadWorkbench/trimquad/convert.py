@@ -20,6 +20,9 @@ FIT_MARGIN = {"cad": 0.55, "mesh": 0.75}
 # each time to this part of the tolerance before.
 REFITS = 3
 REFIT_PART = 0.4
+# A field follows its guidance rather than being smooth at lengths above 1 / (this) of the square root of the area: a
+# file says what is wanted, curvature only suggests it.
+FILE_REACH, CURVATURE_REACH = 100, 4
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 
@@ -246,7 +249,7 @@ def _map_region(item, result, progress):
                 item.seconds[stage] = time.monotonic() - started
 
     try:
-        item.field = run("field", native.cross_field, item.region, str(options.field), item.guidance)
+        item.field = run("field", _cross_field, item, options)
         item.seamless = run("seamless", native.seamless_map, item.region, item.field, options.edge_length)
         item.grid = run("optimize", native.grid_map, item.seamless)
         item.quads = run("extract", native.extract_quads, item.grid, item.region)
@@ -260,6 +263,19 @@ def _map_region(item, result, progress):
         item.error = error
     except MemoryError as error:
         item.error = system_error("memory", error)
+
+
+def _cross_field(item, options, native_progress):
+    """The cross field of a region; without singularities where its shape admits that and nothing is aligned."""
+    native, region = load(), item.region
+    guidance, reach = item.guidance, FILE_REACH
+    if guidance is None:
+        reach = CURVATURE_REACH
+        smooth = options.field == "smooth"
+        guidance = native.no_guidance(region) if smooth else native.curvature_guidance(region, native_progress)
+    if native.admits_no_singularity(region) and not region.features["aligned_edges"]:
+        return native.singularity_free_field(region, guidance, native_progress)
+    return native.cross_field(region, guidance, reach, native_progress)
 
 
 def _refit_faulty(result, progress):

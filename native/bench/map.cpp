@@ -62,7 +62,7 @@ void optimize(benchmark::State& state) {
 
 void sizes(benchmark::internal::Benchmark* bench) {
   for (const int tube : {0, 1})
-    for (const int n : {22, 32, 45, 71, 100, 141, 200}) bench->Args({n, tube});
+    for (const int n : {22, 32, 45, 71, 100, 141, 200, 316}) bench->Args({n, tube});
   bench->ArgNames({"n", "tube"})->Unit(benchmark::kMillisecond);
 }
 

@@ -11,14 +11,13 @@ namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
-/// 2 pi minus the corner angles around an interior vertex.
+}  // namespace
+
 double gaussCurvature(const SurfaceMesh& mesh, VertexHandle v) {
   double sum = kFullTurn;
   for (const auto h : mesh.voh_range(v)) sum -= cornerAngle(mesh, h);
   return sum;
 }
-
-}  // namespace
 
 double Transport::angleOf(FaceHandle f, const Eigen::Vector3d& d) const {
   return std::atan2(d.dot(axisV[f.idx()]), d.dot(axisU[f.idx()]));
@@ -28,7 +27,7 @@ Eigen::Vector3d Transport::direction(FaceHandle f, double a) const {
   return std::cos(a) * axisU[f.idx()] + std::sin(a) * axisV[f.idx()];
 }
 
-Transport transport(const SurfaceMesh& mesh) {
+Transport principalTransport(const SurfaceMesh& mesh) {
   Transport result;
   result.axisU.resize(mesh.n_faces());
   result.axisV.resize(mesh.n_faces());
@@ -50,6 +49,11 @@ Transport transport(const SurfaceMesh& mesh) {
     result.angle[h.idx()] = std::remainder(a, kFullTurn);
     result.angle[o.idx()] = -result.angle[h.idx()];
   }
+  return result;
+}
+
+Transport liftedTransport(const SurfaceMesh& mesh) {
+  Transport result = principalTransport(mesh);
 
   // Spanning tree of triangles: its angles keep their principal value.
   std::vector<char> reached(mesh.n_faces(), 0), inTree(mesh.n_edges(), 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trimquad/base/error.h"
 #include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
@@ -16,6 +17,8 @@ GridMap gridMap(const SeamlessMap& seamless, const Progress& progress) {
     verify(map, true);
     return map;
   }
+  if (!seamless.seams.tube)
+    throw stageError("optimize", "the region needs irregular vertices, whose places this version does not round yet");
   std::vector<BranchTranslation> translations(seamless.seams.rotation.size());
   std::vector<char> known(translations.size(), 0);
   for (const auto h : seamless.mesh.halfedges()) {
@@ -29,9 +32,10 @@ GridMap gridMap(const SeamlessMap& seamless, const Progress& progress) {
       translations[crossing->branch][axis] = whole;
     }
   }
-  const SeamBasis basis(seamless.mesh, seamless.seams, translations);
+  const SeamBasis basis(seamless.mesh, seamless.seams, translations, seamless.alignedSides);
   map.counters = {};
-  const Eigen::VectorXd z = solveMap(seamless.mesh, seamless.seams, seamless.target, seamless.index, basis,
+  const Eigen::VectorXd z = solveMap(seamless.mesh, seamless.seams, seamless.target, seamless.conformalScale,
+                                     seamless.index, basis,
                                      "optimize", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   return map;

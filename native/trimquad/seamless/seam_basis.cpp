@@ -6,7 +6,8 @@
 namespace trimquad {
 
 SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
-                     const std::vector<BranchTranslation>& translations)
+                     const std::vector<BranchTranslation>& translations,
+                     const std::vector<AlignedSide>& aligned)
     : branches_(int(seams.rotation.size())), wedge_(mesh.n_halfedges(), -1), basis_(0) {
   TRIMQUAD_ASSERT(int(translations.size()) == branches_);
   for (const auto v : mesh.vertices()) {
@@ -59,6 +60,10 @@ SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
                            "edge " + std::to_string(h.idx() / 2), mesh.point(mesh.from_vertex_handle(h)));
       }
   }
+  for (const auto& [side, axis] : aligned)
+    TRIMQUAD_ASSERT(basis_.addEquation({{coordinate(wedge(side), axis), 1},
+                                        {coordinate(wedge(mesh.next_halfedge_handle(side)), axis), -1}},
+                                       0));
   basis_.finish();
 }
 

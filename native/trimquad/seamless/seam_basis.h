@@ -12,13 +12,20 @@ namespace trimquad {
 /// Whole quads, per axis; free where there is none.
 using BranchTranslation = std::array<std::optional<int>, 2>;
 
+/// An edge of a triangle that must run along a grid line: both its ends have the same coordinate `axis` in the
+/// triangle's chart.
+struct AlignedSide {
+  HalfedgeHandle side;
+  int axis;
+};
+
 /// The map's unknowns: translations of the branches, then one point per vertex and sector between seams
 /// ("wedge"), constrained to be seamless.
 class SeamBasis {
  public:
   /// \param translations  what each branch is fixed to
   SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
-            const std::vector<BranchTranslation>& translations);
+            const std::vector<BranchTranslation>& translations, const std::vector<AlignedSide>& aligned);
 
   int wedge(HalfedgeHandle h) const { return wedge_[h.idx()]; }  ///< of the vertex that h leaves, in h's face
   int wedgeCount() const { return wedgeCount_; }

@@ -7,7 +7,7 @@
 #include "trimquad/field/cross_field.h"
 #include "trimquad/mesh/parametrization.h"
 #include "trimquad/mesh/region.h"
-#include "trimquad/seamless/seam_graph.h"
+#include "trimquad/seamless/seam_basis.h"
 
 namespace trimquad {
 
@@ -31,6 +31,8 @@ struct MapCounters {
 struct SeamlessMap : Parametrization {
   SeamGraph seams;
   MapTarget target;
+  std::vector<double> conformalScale;  ///< by face; see conformalScale()
+  std::vector<AlignedSide> alignedSides;
   std::vector<int>
       index;  ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
   MapCounters counters;

@@ -1,4 +1,4 @@
-#include "trimquad/quads/isoline.h"
+#include "trimquad/tmesh/isoline.h"
 
 #include "quad_checks.h"
 

@@ -27,8 +27,16 @@ struct IsolineLeg {
 /// exactly one corner.
 std::optional<IsolineLeg> isolineFromCorner(const Parametrization& map, HalfedgeHandle h, int direction);
 
+/// The leg that leaves the point `x` strictly inside triangle `f`.
+IsolineLeg isolineFromInside(const Parametrization& map, FaceHandle f, FixedVector x, int direction);
+
 /// The leg that enters the triangle of `h` through the inside of `h`, where the line must pass.
 IsolineLeg isolineFromSide(const Parametrization& map, HalfedgeHandle h, int direction, Quanta constant);
+
+/// The iso-lines that leave a vertex, counter-clockwise; as many as quarter turns around an interior vertex.
+/// At a boundary vertex all axis directions of its closed sector, from the edge that has the surface on its
+/// left on.
+std::vector<IsolineLeg> isolinesFromVertex(const Parametrization& map, VertexHandle v);
 
 /// The next leg, straight on; none on the boundary (also at a boundary vertex) and at singular vertices.
 std::optional<IsolineLeg> continued(const Parametrization& map, const IsolineLeg& leg);

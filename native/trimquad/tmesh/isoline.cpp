@@ -1,4 +1,4 @@
-#include "trimquad/quads/isoline.h"
+#include "trimquad/tmesh/isoline.h"
 
 #include "trimquad/base/error.h"
 
@@ -69,6 +69,42 @@ std::optional<IsolineLeg> isolineFromCorner(const Parametrization& map, Halfedge
   if (!strictlyInsideSector(right, left, axis)) return {};
   leg.exit = mesh.next_halfedge_handle(h);
   return leg;
+}
+
+IsolineLeg isolineFromInside(const Parametrization& map, FaceHandle f, FixedVector x, int direction) {
+  const auto& mesh = map.mesh;
+  const FixedVector axis = rotated({1, 0}, direction);
+  IsolineLeg leg;
+  leg.side = mesh.halfedge_handle(f);
+  leg.direction = direction;
+  leg.constant = x[leg.constantAxis()];
+  for (const auto h : mesh.fh_range(f)) {
+    const int from = sign(cross(axis, map.from(h) - x)), to = sign(cross(axis, map.to(h) - x));
+    if (from < 0 && to > 0) leg.exit = h;
+    if (from == 0 && dot(axis, map.from(h) - x) > 0) leg.toVertex = mesh.from_vertex_handle(h);
+  }
+  TRIMQUAD_ASSERT(leg.exit.is_valid() != leg.toVertex.is_valid());
+  return leg;
+}
+
+std::vector<IsolineLeg> isolinesFromVertex(const Parametrization& map, VertexHandle v) {
+  const auto& mesh = map.mesh;
+  HalfedgeHandle first = mesh.halfedge_handle(v);
+  // A boundary vertex's halfedge is the boundary's; the surface begins behind the one before it on the
+  // boundary.
+  if (mesh.is_boundary(v)) first = mesh.opposite_halfedge_handle(mesh.prev_halfedge_handle(first));
+  std::vector<IsolineLeg> around;
+  HalfedgeHandle h = first;
+  do {
+    // Counter-clockwise within the corner: from the quadrant of its first side on.
+    const FixedVector side = map.to(h) - map.from(h);
+    int base = 0;
+    while (dot(side, rotated({1, 0}, base)) <= 0 || cross(side, rotated({1, 0}, base)) < 0) ++base;
+    for (int k = 0; k < 4; ++k)
+      if (const auto leg = isolineFromCorner(map, h, (base + k) & 3)) around.push_back(*leg);
+    h = mesh.opposite_halfedge_handle(mesh.prev_halfedge_handle(h));
+  } while (h != first && !mesh.is_boundary(h));
+  return around;
 }
 
 IsolineLeg isolineFromSide(const Parametrization& map, HalfedgeHandle h, int direction, Quanta constant) {

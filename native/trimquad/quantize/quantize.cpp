@@ -1,0 +1,38 @@
+#include "trimquad/quantize/quantize.h"
+
+#include "trimquad/base/error.h"
+#include "trimquad/quantize/branch_and_bound.h"
+#include "trimquad/quantize/deviation_flow.h"
+#include "trimquad/quantize/greedy.h"
+
+namespace trimquad {
+
+Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, const Progress& progress) {
+  const Dual dual(tmesh);
+  const Objective objective(tmesh, options.virtualWeight);
+  const SeparationTest separation(dual, options.separation);
+  Quantization result;
+  result.method = "greedy";
+  result.length = positiveLengths(dual, objective, progress);
+  result.steps = improveGreedily(dual, objective, separation, result.length, progress);
+  if (auto other = separatedFlow(dual, objective, separation, result.length, progress)) {
+    const int steps = improveGreedily(dual, objective, separation, *other, progress);
+    if (objective(*other) < objective(result.length)) result.length = std::move(*other), result.steps = steps;
+  }
+  if (options.optimal) {
+    Optimum optimum = leastLengths(dual, objective, separation, result.length, progress);
+    result.length = std::move(optimum.length);
+    result.lowerBound = optimum.lowerBound;
+    result.method = optimum.proven ? "optimal" : "bounded";
+  }
+  TRIMQUAD_ASSERT(isConsistent(dual, result.length));
+  TRIMQUAD_ASSERT(!separation.fault(result.length));
+  result.objective = objective(result.length);
+  for (const int q : result.length) result.zeroArcs += q == 0;
+  for (const auto& patch : tmesh.patches)
+    result.zeroPatches +=
+        lengthOf(patch.sides[0], result.length) == 0 || lengthOf(patch.sides[1], result.length) == 0;
+  return result;
+}
+
+}  // namespace trimquad

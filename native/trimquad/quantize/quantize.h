@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "trimquad/base/progress.h"
+#include "trimquad/quantize/separation.h"
+
+namespace trimquad {
+
+struct QuantizationOptions {
+  Separation separation = Separation::Free;
+  bool optimal = false;        ///< search on until the objective is proven to be least
+  double virtualWeight = 0.1;  ///< of virtual arcs in the objective, relative to real ones
+};
+
+/// Integer lengths for the arcs of a T-mesh (paper, section 5): consistent (every patch stays a rectangle)
+/// and separating (a grid map with these lengths exists).
+struct Quantization {
+  ArcLengths length;  ///< by arc, in quads
+  std::string
+      method;  ///< "greedy"; "optimal" where proven; "bounded" where the search for a proof was given up
+  double objective = 0;              ///< see `Objective`
+  std::optional<double> lowerBound;  ///< no separating lengths have a smaller objective; only with `optimal`
+  int steps = 0;                     ///< changes that improved the objective
+  int zeroArcs = 0, zeroPatches = 0;
+};
+
+/// Lengths near the arcs' target lengths. First strictly positive ones, then improved by elementary circuits
+/// while they stay separating. Throws Error(Stage, "quantize") where the T-mesh admits no positive lengths.
+Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, const Progress& progress);
+
+}  // namespace trimquad
