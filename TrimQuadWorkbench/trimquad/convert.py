@@ -20,9 +20,6 @@ FIT_MARGIN = {"cad": 0.55, "mesh": 0.75}
 # each time to this part of the tolerance before.
 REFITS = 3
 REFIT_PART = 0.4
-# A field follows its guidance rather than being smooth at lengths above 1 / (this) of the square root of the area: a
-# file says what is wanted, curvature only suggests it.
-FILE_REACH, CURVATURE_REACH = 100, 4
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 
@@ -38,7 +35,7 @@ class RegionResult:
         self.name = region.name
         self.region = region
         self.guidance = self.field = self.seamless = self.grid = self.quads = self.fitted = self.error = None
-        self.refits = 0
+        self.refits = self.field_edits = 0
         self.seconds = {}
 
     @property
@@ -249,8 +246,9 @@ def _map_region(item, result, progress):
                 item.seconds[stage] = time.monotonic() - started
 
     try:
-        item.field = run("field", _cross_field, item, options)
-        item.seamless = run("seamless", native.seamless_map, item.region, item.field, options.edge_length)
+        seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.edge_length)
+        item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
+        item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
         item.grid = run("optimize", native.grid_map, item.seamless)
         item.quads = run("extract", native.extract_quads, item.grid, item.region)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
@@ -263,19 +261,6 @@ def _map_region(item, result, progress):
         item.error = error
     except MemoryError as error:
         item.error = system_error("memory", error)
-
-
-def _cross_field(item, options, native_progress):
-    """The cross field of a region; without singularities where its shape admits that and nothing is aligned."""
-    native, region = load(), item.region
-    guidance, reach = item.guidance, FILE_REACH
-    if guidance is None:
-        reach = CURVATURE_REACH
-        smooth = options.field == "smooth"
-        guidance = native.no_guidance(region) if smooth else native.curvature_guidance(region, native_progress)
-    if native.admits_no_singularity(region) and not region.features["aligned_edges"]:
-        return native.singularity_free_field(region, guidance, native_progress)
-    return native.cross_field(region, guidance, reach, native_progress)
 
 
 def _refit_faulty(result, progress):

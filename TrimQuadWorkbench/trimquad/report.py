@@ -52,7 +52,7 @@ def _region_report(result, index, item, seconds):
         },
         "features": item.region.features,
         "singularities": item.field and _singularities(item.field),
-        "seamless": item.seamless and {"flipped": 0, **item.seamless.counters},
+        "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
         "tmesh": None,
         "quantization": None,
         "embedding": None,
@@ -65,7 +65,11 @@ def _region_report(result, index, item, seconds):
 
 def _singularities(field):
     counts = field.singularities
-    return {"count": sum(counts.values()), "indices": {str(k): counts[k] for k in sorted(counts)}}
+    return {
+        "count": sum(counts.values()),
+        "indices": {str(k): counts[k] for k in sorted(counts)},
+        "loop_turns": field.loop_turns,
+    }
 
 
 def _nurbs_report(result, index, item):

@@ -6,9 +6,7 @@
 #include <map>
 
 #include "bindings.h"
-#include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/field_file.h"
-#include "trimquad/field/singularity_free_field.h"
 
 namespace py = pybind11;
 
@@ -24,16 +22,12 @@ py::array_t<double> rowsOf(const std::vector<Eigen::Vector3d>& vectors) {
   return rows;
 }
 
-FieldGuidance noGuidance(const Region& region) {
-  const auto triangles = region.mesh.n_faces();
-  return {std::vector<Eigen::Vector3d>(triangles, Eigen::Vector3d::Zero()),
-          std::vector<double>(triangles, 0)};
-}
-
 }  // namespace
 
 void bindField(py::module_& m) {
   py::class_<CrossField>(m, "CrossField")
+      .def_readonly("loop_turns", &CrossField::loopTurns,
+                    "quarter turns of each boundary loop against the field")
       .def_property_readonly(
           "singularities",
           [](const CrossField& field) {
@@ -68,20 +62,6 @@ void bindField(py::module_& m) {
         py::arg("region"), py::arg("by_input_triangle"), Released());
   m.def("guidance_of_points", py::overload_cast<const Region&, const FieldFile&>(&guidanceOf),
         py::arg("region"), py::arg("field"), Released());
-  m.def("no_guidance", &noGuidance, py::arg("region"));
-  m.def("curvature_guidance", &curvatureGuidance, py::arg("region"), py::arg("progress"), Released());
-  m.def("cross_field", &crossField, py::arg("region"), py::arg("guidance"), py::arg("guidance_reach"),
-        py::arg("progress"), Released());
-  m.def(
-      "singularity_free_field",
-      [](const Region& region, const FieldGuidance& guidance, const Progress& progress) {
-        requireArea(region.mesh);
-        return singularityFreeField(region.mesh, guidance, progress);
-      },
-      py::arg("region"), py::arg("guidance"), py::arg("progress"), Released());
-  m.def(
-      "admits_no_singularity", [](const Region& region) { return admitsNoSingularity(region.mesh); },
-      py::arg("region"), Released());
 }
 
 }  // namespace trimquad

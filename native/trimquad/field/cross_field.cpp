@@ -20,8 +20,8 @@ using Complex = std::complex<double>;
 constexpr double kQuarter = std::numbers::pi / 2;
 
 /// Fields as one complex number per face, exp(4 i angle): the same for all four directions of a cross.
-/// The energy is sum of w |z_g - exp(4 i transport) z_f|^2 over edges, plus that of the guidance; steps of its
-/// gradient flow are implicit, with unit length restored after each. (Merriman-Bence-Osher; Viertel and
+/// The energy is sum of w |z_g - exp(4 i transport) z_f|^2 over edges, plus that of the guidance; steps of
+/// its gradient flow are implicit, with unit length restored after each. (Merriman-Bence-Osher; Viertel and
 /// Osting 2019)
 class CrossDiffusion {
  public:

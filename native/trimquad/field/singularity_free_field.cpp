@@ -82,7 +82,8 @@ std::vector<int> smoothestTurning(const SurfaceMesh& mesh, const AngleSolve& sol
 
 /// The rotation, up to quarter turns, that brings `angle` closest to the guidance; and how sure it is, in [0,
 /// 1].
-std::pair<double, double> bestRotation(const SurfaceMesh& mesh, const AngleGuidance& guidance, const Eigen::VectorXd& angle) {
+std::pair<double, double> bestRotation(const SurfaceMesh& mesh, const AngleGuidance& guidance,
+                                       const Eigen::VectorXd& angle) {
   std::complex<double> sum = 0;
   double total = 0;
   for (const auto f : mesh.faces()) {
@@ -141,7 +142,8 @@ CrossField singularityFreeField(const SurfaceMesh& mesh, const FieldGuidance& di
   const double area = surfaceArea(mesh);
   double totalWeight = 0;
   for (const auto f : mesh.faces()) {
-    weight[f.idx()] = kGuidanceReach * kGuidanceReach * mesh.calc_face_area(f) / area * guidance.weight[f.idx()];
+    weight[f.idx()] =
+        kGuidanceReach * kGuidanceReach * mesh.calc_face_area(f) / area * guidance.weight[f.idx()];
     totalWeight += weight[f.idx()];
   }
   if (certainty > 1e-3 && totalWeight > 0) {

@@ -91,8 +91,8 @@ Transport liftedTransport(const SurfaceMesh& mesh) {
     for (const auto w : {mesh.from_vertex_handle(h), mesh.to_vertex_handle(h)})
       if (--unsettled[w.idx()] == 1 && !mesh.is_boundary(w)) leaves.push(w);
   };
-  // A chain of edges between two boundary loops has no leaf: the turn of the field around the loops is open there,
-  // so any one of its edges may keep its principal value.
+  // A chain of edges between two boundary loops has no leaf: the turn of the field around the loops is open
+  // there, so any one of its edges may keep its principal value.
   auto open = mesh.edges_begin();
   for (;;) {
     if (leaves.empty()) {
@@ -108,7 +108,8 @@ Transport liftedTransport(const SurfaceMesh& mesh) {
     double sum = 0;
     HalfedgeHandle last;
     for (const auto out : mesh.voh_range(v)) {
-      const auto in = mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
+      const auto in =
+          mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
       sum += result.angle[in.idx()];
       if (!settled[mesh.edge_handle(in).idx()]) last = in;
     }

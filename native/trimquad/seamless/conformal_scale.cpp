@@ -20,11 +20,10 @@ std::vector<double> conformalScale(const SurfaceMesh& mesh, const CrossField& fi
     // Counter-clockwise around its start the edge is crossed from the triangle on its right.
     const auto out = mesh.halfedge_handle(e, 0), h = mesh.halfedge_handle(e, 1);
     const auto f = mesh.face_handle(h), g = mesh.face_handle(out);
-    const double turn =
-        std::remainder(transport.angleOf(g, field.direction[g.idx()]) -
-                           transport.angleOf(f, field.direction[f.idx()]) - transport.angle[h.idx()] -
-                           field.matching[h.idx()] * std::numbers::pi / 2,
-                       2 * std::numbers::pi);
+    const double turn = std::remainder(
+        transport.angleOf(g, field.direction[g.idx()]) - transport.angleOf(f, field.direction[f.idx()]) -
+            transport.angle[h.idx()] - field.matching[h.idx()] * std::numbers::pi / 2,
+        2 * std::numbers::pi);
     const int v = mesh.from_vertex_handle(out).idx(), w = mesh.to_vertex_handle(out).idx();
     const double conductance = 1 / lengthOverWidth[e.idx()];
     entries.emplace_back(v, v, conductance);

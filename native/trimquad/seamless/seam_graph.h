@@ -20,8 +20,9 @@ struct SeamGraph {
   /// By face index: quarter turns that comb the field, so that its directions agree across all edges but
   /// seams, and turn by the branch's rotation there.
   std::vector<int> combing;
-  std::optional<int> outerLoop;  ///< of a region that is mapped as one plane chart, in the order of boundaryLoops
-  bool tube = false;             ///< whether the one branch opens a tube
+  std::optional<int>
+      outerLoop;      ///< of a region that is mapped as one plane chart, in the order of boundaryLoops
+  bool tube = false;  ///< whether the one branch opens a tube
 };
 
 /// The seams that a field needs. A plane region with holes around which the field turns as in the plane needs

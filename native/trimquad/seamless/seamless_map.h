@@ -17,8 +17,9 @@ using MapTarget = std::vector<std::array<Eigen::Vector2d, 3>>;
 
 /// How a map came about.
 struct MapCounters {
-  int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
-  int untangleIterations = 0;  ///< Newton steps until none was
+  int flippedBefore = 0;        ///< triangles that the Poisson solve turned over
+  int untangleIterations = 0;   ///< Newton steps until none was
+  bool conformalStart = false;  ///< whether that failed, and was done again from a nearly conformal map
   bool convexStart =
       false;  ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
   bool scaffolded =

@@ -138,7 +138,8 @@ Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, con
 
 Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
                          const std::vector<double>& conformalScale, const std::vector<int>& index,
-                         const SeamBasis& basis, const std::string& stage, MapCounters& counters, const Progress& progress) {
+                         const SeamBasis& basis, const std::string& stage, MapCounters& counters,
+                         const Progress& progress) {
   const MapEnergy energy(mesh, target, basis);
   const Eigen::VectorXd poisson = poissonMap(mesh, target, basis);
   progress.report(0.2);
@@ -151,6 +152,7 @@ Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const 
   if (counters.flippedBefore > 0) untangle(energy, basis, z, counters.untangleIterations, progress);
   if (!injective()) {
     // Cones can have been wound up the wrong way: start again from a nearly conformal map.
+    counters.conformalStart = true;
     MapTarget scaled = target;
     for (size_t f = 0; f < scaled.size(); ++f)
       for (auto& corner : scaled[f]) corner *= conformalScale[f];

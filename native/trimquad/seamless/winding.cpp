@@ -73,7 +73,8 @@ void spreadFans(const std::vector<VertexHandle>& centers, const SurfaceMesh& mes
     for (const auto& spoke : spokes) {
       const auto f = mesh.face_handle(spoke.out);
       int k = 0;
-      for (auto side = mesh.halfedge_handle(f); side != spoke.out; side = mesh.next_halfedge_handle(side)) ++k;
+      for (auto side = mesh.halfedge_handle(f); side != spoke.out; side = mesh.next_halfedge_handle(side))
+        ++k;
       const Eigen::Vector2d d = target[f.idx()][(k + 1) % 3] - target[f.idx()][k];
       mean += Complex(d.x(), d.y()) / spoke.turn * std::polar(1.0, -stretch * spoke.angle);
     }
@@ -85,8 +86,8 @@ void spreadFans(const std::vector<VertexHandle>& centers, const SurfaceMesh& mes
     }
     const double scale = now / wanted;
     for (const auto& spoke : spokes) {
-      const Complex end = image(spoke.out) +
-                          std::polar(scale * spoke.length, direction + stretch * spoke.angle) * spoke.turn;
+      const Complex end =
+          image(spoke.out) + std::polar(scale * spoke.length, direction + stretch * spoke.angle) * spoke.turn;
       const auto there = mesh.next_halfedge_handle(spoke.out);
       x[basis.coordinate(basis.wedge(there), 0)] = end.real();
       x[basis.coordinate(basis.wedge(there), 1)] = end.imag();
