@@ -4,6 +4,35 @@
 #include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
+namespace {
+
+/// The images of the triangles: the map itself as a target.
+MapTarget imageOf(const Parametrization& map) {
+  MapTarget image(map.mesh.n_faces());
+  for (const auto f : map.mesh.faces()) {
+    auto h = map.mesh.halfedge_handle(f);
+    for (int k = 0; k < 3; ++k, h = map.mesh.next_halfedge_handle(h))
+      image[f.idx()][k] = map.scale.toQuads(map.from(h));
+  }
+  return image;
+}
+
+/// The seamless map in the coordinates of the basis, the grid points left at the origin.
+Eigen::VectorXd coordinatesOf(const SeamlessMap& map, const SeamBasis& basis) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(basis.basis().variableCount());
+  for (const auto h : map.mesh.halfedges()) {
+    if (map.mesh.is_boundary(h)) continue;
+    const Eigen::Vector2d corner = map.scale.toQuads(map.from(h));
+    for (int axis = 0; axis < 2; ++axis) x[basis.coordinate(basis.wedge(h), axis)] = corner[axis];
+    const auto& crossing = map.seams.crossing[h.idx()];
+    if (!crossing || !crossing->forward) continue;
+    const Eigen::Vector2d translation = map.scale.toQuads(map.transition(h).translation);
+    for (int axis = 0; axis < 2; ++axis) x[basis.translation(crossing->branch, axis)] = translation[axis];
+  }
+  return x;
+}
+
+}  // namespace
 
 GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
                 const Progress& progress) {
@@ -19,8 +48,10 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
   constraints.aligned = seamless.alignedSides;
   constraints.grid = gridPoints(seamless.mesh, seamless.seams, tmesh, quantization);
   const SeamBasis basis(seamless.mesh, seamless.seams, constraints);
-  const Eigen::VectorXd z = solveMap(seamless.mesh, seamless.seams, seamless.target, seamless.conformalScale,
-                                     seamless.index, basis, "optimize", map.counters, progress);
+  const Eigen::VectorXd z =
+      solveMap(seamless.mesh, seamless.seams, seamless.target,
+               {imageOf(seamless), seamless.target, seamless.conformalTarget}, coordinatesOf(seamless, basis),
+               seamless.index, basis, "optimize", Effort::Full, map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   map.aligned = seamless.aligned;
   map.featurePoints = seamless.featurePoints;

@@ -13,8 +13,8 @@ namespace trimquad {
 /// Whole quads, per axis; free where there is none.
 using BranchTranslation = std::array<std::optional<int>, 2>;
 
-/// An edge of a triangle that must run along a grid line: both its ends have the same coordinate `axis` in the
-/// triangle's chart.
+/// An edge of a triangle that must run along a grid line: both its ends have the same coordinate `axis` in
+/// the triangle's chart.
 struct AlignedSide {
   HalfedgeHandle side;
   int axis;

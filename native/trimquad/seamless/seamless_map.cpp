@@ -104,7 +104,7 @@ int outerLoopOf(const SurfaceMesh& mesh, const CrossField& field) {
 
 }  // namespace
 
-SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength,
+SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, Effort effort,
                         const Progress& progress) {
   if (!(edgeLength > 0) || !std::isfinite(edgeLength))
     throw inputError("seamless", "the edge length must be a positive number");
@@ -112,7 +112,10 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   SeamlessMap map;
   map.seams = seamGraph(mesh, field);
   map.target = mapTarget(mesh, field, map.seams.combing, edgeLength);
-  map.conformalScale = conformalScale(mesh, field);
+  map.conformalTarget = map.target;
+  const auto scale = conformalScale(mesh, field);
+  for (size_t f = 0; f < scale.size(); ++f)
+    for (auto& corner : map.conformalTarget[f]) corner *= scale[f];
   map.alignedSides = alignedSides(region, map.target);
   map.index = field.index;
   SeamConstraints constraints;
@@ -125,8 +128,9 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
     constraints.translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
   }
   const SeamBasis basis(mesh, map.seams, constraints);
-  const Eigen::VectorXd z = solveMap(mesh, map.seams, map.target, map.conformalScale, field.index, basis,
-                                     "seamless", map.counters, progress);
+  const Eigen::VectorXd z =
+      solveMap(mesh, map.seams, map.target, {map.target, map.conformalTarget}, std::nullopt, field.index,
+               basis, "seamless", effort, map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
   // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
   // A tube that is not becomes a plane region, whose map cannot follow the field.
