@@ -64,10 +64,12 @@ void bindTMesh(py::module_& m) {
   py::class_<TMesh>(m, "TMesh")
       .def_property_readonly("nodes", &nodesOf, "(kind, critical, border, xyz) each")
       .def_property_readonly("arcs", &arcsOf, "(from, to, length in quads, virtual, border, critical) each")
-      .def_property_readonly("patches", &patchesOf,
-                             "(type, sides) each; an arc is its number + 1, negative where it is walked backward");
+      .def_property_readonly(
+          "patches", &patchesOf,
+          "(type, sides) each; an arc is its number + 1, negative where it is walked backward");
   py::class_<Parametrization>(m, "Map");
-  m.def("read_map", &readMapObj, py::arg("name"), py::arg("text"), Released(), "The map in the text of an OBJ file.");
+  m.def("read_map", &readMapObj, py::arg("name"), py::arg("text"), Released(),
+        "The map in the text of an OBJ file.");
   m.def(
       "partition", [](const SeamlessMap& map, const Progress& progress) { return partition(map, progress); },
       py::arg("seamless"), py::arg("progress"), Released());
