@@ -1,4 +1,4 @@
-"""Pictures of a result: the map as a checker on the surface, the quads, the B-spline faces."""
+"""Pictures of a result: the map as a checker on the surface, the T-mesh, the quads, the B-spline faces."""
 import numpy
 
 from .error import input_error
@@ -11,13 +11,15 @@ QUAD_COLOUR = numpy.array([0.90, 0.91, 0.93])
 TRIMMED_COLOUR = numpy.array([0.98, 0.84, 0.60])
 FACE_COLOURS = numpy.array([[0.55, 0.68, 0.85], [0.93, 0.76, 0.52], [0.62, 0.80, 0.62], [0.85, 0.62, 0.66],
                             [0.74, 0.68, 0.86], [0.62, 0.80, 0.82]])
+ARC_COLOUR, ZERO_COLOUR = "#1b2a41", "#d03020"
+FEW_COLOUR, MANY_COLOUR, FEATURE_COLOUR = "#d03020", "#2060c0", "#209040"
 # Triangles are divided so that the checker's borders look straight: at most so many parts a side, or in all.
 CHECKER_DIVISION, CHECKER_PARTS = 6, 250_000
 LIGHT = numpy.array([0.35, -0.45, 0.82])
 
 
 def write_pictures(result, path_of, progress):
-    """Write map.png, quads.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
+    """Write map.png, tmesh.png, tmesh_unfolded.png, quads.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
     try:
         import matplotlib
 
@@ -27,6 +29,10 @@ def write_pictures(result, path_of, progress):
     maps = [triangles_of_map(r.grid.to_obj()) for r in result.regions if r.grid is not None]
     if maps:
         _save(path_of("map.png"), [_checker(*m) for m in maps], [])
+    progress.check()
+    items = [r for r in result.regions if r.quantization is not None]
+    if items:
+        _tmesh_pictures(items, path_of)
     progress.check()
     polygons = [r.polygons for r in result.regions if r.quads is not None]
     if polygons:
@@ -101,11 +107,128 @@ def _faces(result):
     return faces, lines
 
 
-def _save(path, surfaces, lines):
-    """Paint triangles and lines from back to front, in a fixed oblique view."""
+def _tmesh_pictures(items, path_of):
+    """The T-meshes over their surfaces, and as rectangles laid out side by side."""
+    surfaces, lines, points, layouts = [], [], [], []
+    for item in items:
+        corners, _ = triangles_of_map(item.seamless.to_obj())
+        surfaces.append((corners, numpy.tile(QUAD_COLOUR, (len(corners), 1))))
+        curves = load().arc_curves(item.tmesh, item.seamless)
+        lines += _arc_lines(item, [numpy.stack([c[:-1], c[1:]], axis=1) for c in curves])
+        positions = numpy.array([n[3] for n in item.tmesh.nodes])
+        points += _node_points(item, [[p] for p in positions])
+        layouts.append(layout_of_patches(item.tmesh))
+    _save(path_of("tmesh.png"), surfaces, lines, points)
+    offset = 0.0
+    flat_lines, flat_points = [], []
+    for item, (arcs, nodes) in zip(items, layouts):
+        low = min((a[..., 0].min() for a in arcs if len(a)), default=0.0)
+        high = max((a[..., 0].max() for a in arcs if len(a)), default=0.0)
+        shift = numpy.array([offset - low, 0.0])
+        flat_lines += _arc_lines(item, [a + shift for a in arcs])
+        flat_points += _node_points(item, [[p + shift for p in places] for places in nodes])
+        offset += 1.1 * (high - low) + 1
+    drawing, axes = _drawing()
+    _add_lines(axes, flat_lines)
+    _add_points(axes, flat_points)
+    _finish(drawing, axes, path_of("tmesh_unfolded.png"))
+
+
+def _arc_lines(item, segments):
+    """Real arcs black, virtual ones dashed, those of length zero red."""
+    styles = {}
+    for arc, q, pieces in zip(item.tmesh.arcs, item.quantization.length, segments):
+        styles.setdefault((arc[3], q == 0), []).append(pieces)
+    return [
+        (numpy.concatenate(pieces), 1.3, ZERO_COLOUR if zero else ARC_COLOUR, "dashed" if virtual else "solid")
+        for (virtual, zero), pieces in sorted(styles.items())
+    ]
+
+
+def _node_points(item, places):
+    """Critical nodes: singularities by their number of arcs, others in one colour."""
+    valence = numpy.zeros(len(item.tmesh.nodes), int)
+    for start, end, _, virtual, _, _ in item.tmesh.arcs:
+        if not virtual:
+            valence[start] += 1
+            valence[end] += 1
+    points = []
+    for (kind, critical, _, _), arcs, at in zip(item.tmesh.nodes, valence, places):
+        if critical and len(at):
+            colour = FEATURE_COLOUR if kind != "singular" else FEW_COLOUR if arcs < 4 else MANY_COLOUR
+            points.append((numpy.array(at), colour))
+    return points
+
+
+def layout_of_patches(tmesh):
+    """Every patch as its rectangle in the plane, laid beside one that it shares an arc with. Round a singularity
+    rectangles overlap or gape. Returns, by arc, segments (n, 2, 2), and by node its places."""
+    arcs, patches = tmesh.arcs, tmesh.patches
+    where = {}  # half-arc -> patch, side
+    for p, (_, sides) in enumerate(patches):
+        for s, side in enumerate(sides):
+            for h in side:
+                where[h] = (p, s)
+    turns = numpy.array([[1, 0], [0, 1], [-1, 0], [0, -1]], float)
+    segments, nodes = [[] for _ in arcs], [[] for _ in tmesh.nodes]
+    placed = [False] * len(patches)
+    for first in range(len(patches)):
+        waiting = [] if placed[first] else [(first, 0, patches[first][1][0][0], numpy.zeros(2))]
+        placed[first] = True
+        while waiting:
+            p, turn, anchor, x = waiting.pop(0)
+            loop = [(h, s) for s, side in enumerate(patches[p][1]) for h in side]
+            begin = next(i for i, (h, _) in enumerate(loop) if h == anchor)
+            turn -= loop[begin][1]  # direction of side 0
+            for h, s in loop[begin:] + loop[:begin]:
+                arc = arcs[abs(h) - 1]
+                y = x + arc[2] * turns[(turn + s) % 4]
+                segments[abs(h) - 1].append([x, y])
+                nodes[arc[0] if h > 0 else arc[1]].append(x)
+                other = where.get(-h)
+                if other and not placed[other[0]]:
+                    placed[other[0]] = True
+                    waiting.append((other[0], (turn + s + 2) % 4, -h, y))
+                x = y
+    return [numpy.array(s).reshape(-1, 2, 2) for s in segments], nodes
+
+
+def _drawing():
     from matplotlib import figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.collections import LineCollection, PolyCollection
+
+    drawing = figure.Figure(figsize=SIZE, dpi=100)
+    FigureCanvasAgg(drawing)
+    axes = drawing.add_axes([0.02, 0.02, 0.96, 0.96])
+    axes.set_aspect("equal")
+    axes.axis("off")
+    return drawing, axes
+
+
+def _add_lines(axes, lines):
+    from matplotlib.collections import LineCollection
+
+    for segments, width, colour, style in lines:
+        axes.add_collection(LineCollection(segments, colors=colour, linewidths=width, linestyles=style))
+
+
+def _add_points(axes, points):
+    for places, colour in points:
+        axes.plot(places[:, 0], places[:, 1], "o", color=colour, markersize=5, zorder=3)
+
+
+def _finish(drawing, axes, path):
+    axes.autoscale_view()
+    drawing.savefig(path, metadata={"Software": None})
+
+
+def _save(path, surfaces, lines, points=()):
+    """Paint triangles, lines and points from back to front, in a fixed oblique view.
+
+    surfaces  (triangles, colours) each; lines (segments, width) or (segments, width, colour, style); points (places,
+              colour)
+    """
+    from matplotlib.collections import PolyCollection
 
     triangles = numpy.concatenate([s[0] for s in surfaces])
     colours = numpy.concatenate([s[1] for s in surfaces])
@@ -115,19 +238,17 @@ def _save(path, surfaces, lines):
     flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
     order = numpy.argsort(depth, kind="stable")
     shaded = numpy.clip(colours * _shade(triangles, view)[:, None], 0, 1)
-    drawing = figure.Figure(figsize=SIZE, dpi=100)
-    FigureCanvasAgg(drawing)
-    axes = drawing.add_axes([0.02, 0.02, 0.96, 0.96])
-    axes.set_aspect("equal")
-    axes.axis("off")
+    drawing, axes = _drawing()
     axes.add_collection(
         PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
     )
-    for segments, width in lines:
+    for segments, width, *style in lines:
         seen = _visible(segments, triangles, view)
-        axes.add_collection(LineCollection((segments @ view[:, :2])[seen], colors="#1b2a41", linewidths=width))
-    axes.autoscale_view()
-    drawing.savefig(path, metadata={"Software": None})
+        _add_lines(axes, [((segments @ view[:, :2])[seen], width, *(style or (ARC_COLOUR, "solid")))])
+    for places, colour in points:
+        seen = _visible(numpy.stack([places, places], axis=1), triangles, view)
+        _add_points(axes, [((places @ view[:, :2])[seen], colour)])
+    _finish(drawing, axes, path)
 
 
 def _view_axes(triangles):

@@ -58,6 +58,20 @@ py::list patchesOf(const TMesh& tmesh) {
   return patches;
 }
 
+/// Corners of each arc's course in space, n x 3; of a virtual arc the places of its nodes.
+py::list curvesOf(const TMesh& tmesh, const Parametrization& map) {
+  py::list curves;
+  for (const auto& arc : tmesh.arcs) {
+    std::vector<Eigen::Vector3d> points{tmesh[arc.from].position};
+    for (const auto& leg : arc.legs) points.push_back(placeInSpace(map, leg.to));
+    if (arc.isVirtual) points.push_back(tmesh[arc.to].position);
+    Eigen::MatrixX3d rows(points.size(), 3);
+    for (std::size_t k = 0; k < points.size(); ++k) rows.row(Eigen::Index(k)) = points[k];
+    curves.append(rows);
+  }
+  return curves;
+}
+
 }  // namespace
 
 void bindTMesh(py::module_& m) {
@@ -67,6 +81,10 @@ void bindTMesh(py::module_& m) {
       .def_property_readonly(
           "patches", &patchesOf,
           "(type, sides) each; an arc is its number + 1, negative where it is walked backward");
+  m.def(
+      "arc_curves", [](const TMesh& tmesh, const SeamlessMap& map) { return curvesOf(tmesh, map); },
+      py::arg("tmesh"), py::arg("seamless"),
+      "Corners of each arc's course in space, n x 3; of a virtual arc the places of its nodes.");
   py::class_<Parametrization>(m, "Map");
   m.def("read_map", &readMapObj, py::arg("name"), py::arg("text"), Released(),
         "The map in the text of an OBJ file.");
