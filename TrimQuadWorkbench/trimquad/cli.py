@@ -50,13 +50,15 @@ def _parser():
     p.add_argument("--edge-length", type=float, metavar="L", help="quad edge length in the input's unit")
     p.add_argument("--quads", type=int, metavar="N", help="about how many quads (default 1000)")
     p.add_argument("--boundary", metavar="free|aligned", help="what the boundary is by default (default free)")
-    p.add_argument("--align", type=_names, metavar="LIST", help="boundary edges to align to")
-    p.add_argument("--free", type=_names, metavar="LIST", help="boundary edges to leave free")
+    p.add_argument("--align", type=_names, metavar="LIST", help="edges that grid lines follow: Edge3; of meshes loop:2, loop:2/1, angle:30-90")
+    p.add_argument("--free", type=_names, metavar="LIST", help="edges that grid lines need not follow")
     p.add_argument("--features", metavar="trim|align|ignore",
-                   help="sharp edges: separate trimmed surfaces, or nothing (default trim for CAD, ignore for meshes)")
+                   help="sharp edges: separate trimmed surfaces, or aligned curves, or nothing "
+                        "(default trim for CAD, align for meshes)")
     p.add_argument("--feature-angle", type=float, metavar="DEG", help="what counts as sharp (default 30)")
-    p.add_argument("--feature-points", type=_names, metavar="LIST", help="points that must become quad vertices")
-    p.add_argument("--field", metavar="FIELD", help="what the cross field follows (default curvature)")
+    p.add_argument("--feature-points", type=_names, metavar="LIST", help="points that become quad vertices: Vertex5 or x,y,z")
+    p.add_argument("--field", metavar="smooth|curvature|FILE",
+                   help="what the cross field follows (default curvature)")
     p.add_argument("--fill-holes", type=float, metavar="L", help="bridge boundary loops shorter than L (default 0)")
     p.add_argument("--optimal", action="store_true", default=None, help="quantize to proven optimality")
     p.add_argument("--tolerance", type=float, metavar="T", help="largest deviation, in the input's unit")
@@ -133,6 +135,9 @@ class _Conversion:
 
     def _conclude(self):
         result, failed = self.result, self.result.failed
+        if not self.parsed.quiet:
+            for line in result.warnings:
+                _say(f"trimquad: {line}")
         if self.parsed.verbose:
             for item in result.regions:
                 counts = item.quads.statistics if item.quads else {"quads": 0, "trimmed": 0}

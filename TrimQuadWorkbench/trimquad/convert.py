@@ -2,11 +2,12 @@
 import os
 import time
 from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple, Tuple
 
-from .error import Error, cancelled, system_error
+from .error import Error, cancelled, input_error, system_error
 from .freecad_shape import shape_from_bytes
 from .native import load
-from .options import Options
+from .options import FIELDS, Options
 from .polygons import Polygons
 from .progress import Progress
 from .report import report
@@ -26,15 +27,16 @@ TRIANGLES_PER_EDGE = 3
 class RegionResult:
     """What became of one region. Stages that were not reached are None; `error` says why.
 
-    name, region (its triangles), field, seamless, tmesh, quantization, grid, quads, fitted: values of the compiled stages;
-    seconds: stage name -> seconds.
+    name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
+    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds.
     """
 
     def __init__(self, region):
         self.name = region.name
         self.region = region
-        self.field = self.seamless = self.tmesh = self.quantization = self.grid = self.quads = self.fitted = self.error = None
-        self.refits = 0
+        self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
+        self.grid = self.quads = self.fitted = self.error = None
+        self.refits = self.field_edits = 0
         self.seconds = {}
 
     @property
@@ -42,12 +44,48 @@ class RegionResult:
         """The quads as Polygons, or None."""
         return None if self.quads is None else Polygons.from_obj(self.quads.to_obj())
 
+    @property
+    def directions(self):
+        """The cross field, or None: by triangle of the region one of its four unit directions, array (m, 3)."""
+        return None if self.field is None else self.field.directions
+
+    @property
+    def singularities(self):
+        """Singular vertices of the cross field: a list of Singularity, empty before the field is there."""
+        if self.field is None:
+            return []
+        points = self.region.points
+        return [Singularity(v, index, tuple(points[v])) for v, index in self.field.singular_vertices]
+
+    @property
+    def map(self):
+        """The finest map that was reached (the grid map, else the seamless one) as a SurfaceMap, or None."""
+        found = self.grid or self.seamless
+        return None if found is None else SurfaceMap(*found.arrays)
+
+
+class Singularity(NamedTuple):
+    """A vertex where a cross field has no direction."""
+
+    vertex: int  # of the region
+    index: int  # in quarter turns: 1 where three quads meet, -1 where five do
+    position: Tuple[float, float, float]
+
+
+class SurfaceMap(NamedTuple):
+    """A map of triangles into the plane."""
+
+    points: object  # vertices, array (n, 3); the first are the region's own
+    triangles: object  # vertex numbers, array (m, 3)
+    uv: object  # by triangle and corner, in quads, array (m, 3, 2)
+
 
 class Result:
     """A finished conversion.
 
     source, options (resolved), model, regions (RegionResult each), spline (the B-spline faces and their shared edges,
-    or None where no region got that far), native_shape (the same assembled), seconds (of stages of the whole model).
+    or None where no region got that far), native_shape (the same assembled), warnings (lines for the user), seconds (of
+    stages of the whole model).
     """
 
     def __init__(self, source, options, model):
@@ -58,6 +96,7 @@ class Result:
         self.regions = [RegionResult(region) for region in model.regions]
         self.spline = self.native_shape = None
         self.repairs = {}
+        self.warnings = []
         self.shape_counts = {}
         self.seconds = {}
         self.started = time.monotonic()
@@ -117,6 +156,10 @@ def _convert(source, options, progress):
     with progress.stage("tessellate") as native_progress:
         build = _cad_model if source.kind == "cad" else _mesh_model
         result = build(source, thing, options, native_progress)
+        guidance = _read_field(result, thing)
+    if guidance is not None:
+        for item in result.regions:
+            item.guidance = guidance(item.region)
     result.started = started
     result.seconds["tessellate"] = time.monotonic() - started
     _map_regions(result, progress)
@@ -130,8 +173,7 @@ def _cad_model(source, shape, options, native_progress):
         shape,
         edge_length=options.edge_length / TRIANGLES_PER_EDGE,
         tolerance=FIT_MARGIN["cad"] * options.tolerance,
-        feature_angle=options.feature_angle,
-        features=options.features,
+        features=_feature_options(options),
         progress=native_progress,
     )
     result = Result(source, options, model)
@@ -139,14 +181,49 @@ def _cad_model(source, shape, options, native_progress):
     return result
 
 
-def _mesh_model(source, soup, options, native_progress):
-    trim_angle = options.feature_angle if options.features == "trim" else None
-    model, repairs = load().mesh_model(soup, trim_angle, native_progress)
-    area = sum(region.area for region in model.regions)
-    result = Result(source, options.resolved("mesh", area, model.diagonal, os.cpu_count() or 1), model)
-    result.shape_counts = {"faces": soup.triangles, "edges": model.curves}
-    result.repairs = repairs
+def _mesh_model(source, mesh, options, native_progress):
+    native = load()
+    repaired = native.repair(mesh)
+    options = options.resolved("mesh", repaired.area, repaired.diagonal, os.cpu_count() or 1)
+    model = native.mesh_model(repaired, _feature_options(options), native_progress)
+    result = Result(source, options, model)
+    result.shape_counts = {"faces": mesh.triangles, "edges": len(model.curves)}
+    result.repairs = repaired.repairs
+    if repaired.summary:
+        result.warnings.append(f"the mesh was repaired: {repaired.summary}")
     return result
+
+
+def _feature_options(options):
+    vertices, points = options.feature_vertices_and_points()
+    return load().FeatureOptions(
+        features=options.features,
+        angle=options.feature_angle,
+        align_boundary=options.boundary == "aligned",
+        align=options.align,
+        free=options.free,
+        vertices=vertices,
+        points=points,
+        quad_length=options.edge_length,
+    )
+
+
+def _read_field(result, thing):
+    """For a field from a file: the function that gives a region its FieldGuidance. Otherwise None. Raises Error(input)."""
+    if result.options.field in FIELDS:
+        return None
+    native = load()
+    field = native.read_field(os.fspath(result.options.field))
+    if field.placed:
+        return lambda region: native.guidance_of_points(region, field)
+    if result.source.kind == "cad":
+        raise input_error(
+            "options",
+            f"--field {result.options.field}: a CAD shape has no faces or vertices of a mesh that directions could be "
+            "given for; give a point before each direction",
+        )
+    directions = native.triangle_directions(field, thing)
+    return lambda region: native.guidance_of_triangles(region, directions)
 
 
 def _map_regions(result, progress):
@@ -170,11 +247,12 @@ def _map_region(item, result, progress):
                 item.seconds[stage] = time.monotonic() - started
 
     try:
-        item.field = run("field", native.cross_field, item.region)
-        item.seamless = run("seamless", native.seamless_map, item.region, item.field, options.edge_length)
+        seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.edge_length)
+        item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
+        item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
         item.tmesh = run("partition", native.partition, item.seamless)
         item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
-        item.grid = run("optimize", native.grid_map, item.seamless)
+        item.grid = run("optimize", native.grid_map, item.seamless, item.tmesh, item.quantization)
         item.quads = run("extract", native.extract_quads, item.grid, item.region)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
             item.fitted = run(

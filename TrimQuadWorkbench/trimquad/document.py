@@ -3,13 +3,14 @@ from .error import input_error
 
 
 def write_document(result, path):
-    """Save the B-spline faces and the quads of a Result as .FCStd. Needs FreeCAD's modules; raises Error(input)."""
+    """Save the B-spline faces, the quads and the map of a Result as .FCStd. Needs FreeCAD's modules; raises Error(input)."""
     try:
         import FreeCAD
         import Mesh  # noqa: F401
         import Part  # noqa: F401
     except ImportError as error:
         raise input_error("write", f"--write fcstd needs FreeCAD's Python modules on the path ({error})") from None
+    from .features import grid_map
     from .features.quad_mesh import QuadMesh, fill
 
     document = FreeCAD.newDocument("TrimQuad", hidden=True)
@@ -22,6 +23,11 @@ def write_document(result, path):
             QuadMesh(quads)
             fill(quads, parts)
             quads.purgeTouched()
+        if any(r.map is not None for r in result.regions):
+            grid = document.addObject("App::FeaturePython", "GridMap")
+            grid_map.GridMap(grid)
+            grid_map.fill(grid, result.regions)
+            grid.purgeTouched()
         document.saveAs(path)
     finally:
         FreeCAD.closeDocument(document.Name)

@@ -1,11 +1,13 @@
 """The options of a conversion, the same for the command line, scripts and the GUI."""
 import dataclasses
 import math
+import os
 from typing import List, Optional
 
 from .error import input_error
 
 FILE_KINDS = ("seamless", "tmesh", "gridmap", "quads", "nurbs", "texture", "report", "fcstd", "pictures")
+FIELDS = ("smooth", "curvature", "stress")
 DEFAULT_QUADS = 1000
 MOST_QUADS = 2_000_000
 
@@ -15,7 +17,11 @@ class Options:
     """Every option of a conversion with its default. Lengths are in the input's unit (mm for CAD).
 
     None means: `edge_length` from `quads`; `quads` 1000 where there is no edge length; `features` 'trim' for CAD and
-    'ignore' for meshes; `tolerance` from `relative_tolerance`; `threads` as many as there are cores.
+    'align' for meshes; `tolerance` from `relative_tolerance`; `threads` as many as there are cores.
+
+    align, free      names of edges: 'Edge3' of CAD; 'loop:2', 'loop:2/1', 'feature:0', 'angle:30-90' of meshes
+    feature_points   names of CAD vertices, or points: 'Vertex5', '1.5,2,0', (1.5, 2, 0), or '1.5', '2', '0' in a row
+    field            'curvature', 'smooth', or the path of a file of directions
     """
 
     edge_length: Optional[float] = None
@@ -67,18 +73,19 @@ class Options:
         for kind in self.write:
             if kind not in FILE_KINDS:
                 raise _refused("write", f"knows {', '.join(FILE_KINDS)}, not '{kind}'")
+        for name in ("align", "free"):
+            if not all(isinstance(x, str) and x for x in getattr(self, name)):
+                raise _refused(name, f"is a list of names of edges, not {getattr(self, name)}")
+        self.feature_vertices_and_points()
+        if not (isinstance(self.field, (str, os.PathLike)) and os.fspath(self.field)):
+            raise _refused("field", f"must be one of {', '.join(FIELDS)} or a file, not {self.field}")
         if not self.write:
             raise _refused("write", f"needs at least one of {', '.join(FILE_KINDS)}")
         self._refuse_missing_stages()
 
     def _refuse_missing_stages(self):
         for given, what in (
-            (self.boundary == "aligned", "--boundary aligned"),
-            (bool(self.align), "--align"),
-            (bool(self.free), "--free"),
-            (self.features == "align", "--features align"),
-            (bool(self.feature_points), "--feature-points"),
-            (self.field != "curvature", f"--field {self.field}"),
+            (self.field == "stress", "--field stress"),
             (self.fill_holes > 0, "--fill-holes"),
             (self.optimal, "--optimal"),
             (self.route == "reembed", "--route reembed"),
@@ -86,6 +93,26 @@ class Options:
         ):
             if given:
                 raise input_error("options", f"{what} is not in this version yet; leave it out")
+
+    def feature_vertices_and_points(self):
+        """`feature_points` as (names of vertices, [(x, y, z)]). Raises Error(input)."""
+        vertices, words = [], []
+        for item in self.feature_points:
+            words += item.replace(";", ",").replace(",", " ").split() if isinstance(item, str) else list(item)
+        numbers = []
+        for word in words:
+            if isinstance(word, str) and word.startswith("Vertex"):
+                vertices.append(word)
+                continue
+            try:
+                numbers.append(float(word))
+            except (TypeError, ValueError):
+                raise _refused("feature_points", f"knows names such as Vertex5 and points x,y,z, not '{word}'") from None
+            if not math.isfinite(numbers[-1]):
+                raise _refused("feature_points", f"needs finite coordinates, not {word}")
+        if len(numbers) % 3:
+            raise _refused("feature_points", f"needs three coordinates for each point; there are {len(numbers)} numbers")
+        return vertices, [tuple(numbers[i : i + 3]) for i in range(0, len(numbers), 3)]
 
     def resolved(self, kind, area, diagonal, default_threads):
         """A copy with every None replaced, for an input of `kind` ('cad' or 'mesh') of that area and diagonal.
@@ -118,7 +145,7 @@ class Options:
             )
         if options.quads is None:
             options.quads = max(1, round(count))
-        options.features = options.features or ("trim" if kind == "cad" else "ignore")
+        options.features = options.features or ("trim" if kind == "cad" else "align")
         if options.tolerance is None:
             options.relative_tolerance = options.relative_tolerance or 1e-3
             options.tolerance = options.relative_tolerance * diagonal

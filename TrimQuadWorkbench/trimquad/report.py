@@ -25,8 +25,10 @@ def report(result):
     return {
         "input": {"path": result.source.path, "kind": result.source.kind, **result.shape_counts,
                   "repairs": result.repairs},
+        "warnings": result.warnings,
         "options": {k: v for k, v in sorted(vars(result.options).items())},
         "regions": regions,
+        "curves": result.model.curves,
         "loose_edges": result.spline and result.spline.loose_edges,
         "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions), 6),
         "peak_memory_mb": _peak_memory_mb(),
@@ -49,8 +51,9 @@ def _region_report(result, index, item, seconds):
             "boundary_loops": item.region.boundary_loops,
             "euler": item.region.euler,
         },
+        "features": item.region.features,
         "singularities": item.field and _singularities(item.field),
-        "seamless": item.seamless and {"flipped": 0, **item.seamless.counters},
+        "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
         "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
         "quantization": item.quantization and _quantization_report(item.quantization),
         "embedding": None,
@@ -72,7 +75,11 @@ def _quantization_report(quantization):
 
 def _singularities(field):
     counts = field.singularities
-    return {"count": sum(counts.values()), "indices": {str(k): counts[k] for k in sorted(counts)}}
+    return {
+        "count": sum(counts.values()),
+        "indices": {str(k): counts[k] for k in sorted(counts)},
+        "loop_turns": field.loop_turns,
+    }
 
 
 def _nurbs_report(result, index, item):

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "trimquad/field/curvature_guidance.h"
+#include "trimquad/field/singularity_free_field.h"
 #include "trimquad/gridmap/grid_map.h"
 
 using namespace trimquad;
@@ -35,16 +37,20 @@ double edgeLengthOf(const Region& region) {
   return std::sqrt(surfaceArea(region.mesh) / 1000);
 }
 
+CrossField fieldOf(const Region& region) {
+  return singularityFreeField(region.mesh, curvatureGuidance(region, Progress()), Progress());
+}
+
 void field(benchmark::State& state) {
   const Region region = sheetOrTube(int(state.range(0)), state.range(1) != 0);
-  for (auto _ : state) benchmark::DoNotOptimize(crossField(region, Progress()));
+  for (auto _ : state) benchmark::DoNotOptimize(fieldOf(region));
   state.counters["triangles"] = double(region.mesh.n_faces());
   state.SetComplexityN(std::int64_t(region.mesh.n_faces()));
 }
 
 void seamless(benchmark::State& state) {
   const Region region = sheetOrTube(int(state.range(0)), state.range(1) != 0);
-  const CrossField directions = crossField(region, Progress());
+  const CrossField directions = fieldOf(region);
   for (auto _ : state)
     benchmark::DoNotOptimize(seamlessMap(region, directions, edgeLengthOf(region), Progress()));
   state.counters["triangles"] = double(region.mesh.n_faces());
@@ -54,7 +60,7 @@ void seamless(benchmark::State& state) {
 void optimize(benchmark::State& state) {
   const Region region = sheetOrTube(int(state.range(0)), state.range(1) != 0);
   const SeamlessMap map =
-      seamlessMap(region, crossField(region, Progress()), edgeLengthOf(region), Progress());
+      seamlessMap(region, fieldOf(region), edgeLengthOf(region), Progress());
   for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, Progress()));
   state.counters["triangles"] = double(region.mesh.n_faces());
   state.SetComplexityN(std::int64_t(region.mesh.n_faces()));
@@ -62,7 +68,7 @@ void optimize(benchmark::State& state) {
 
 void sizes(benchmark::internal::Benchmark* bench) {
   for (const int tube : {0, 1})
-    for (const int n : {22, 32, 45, 71, 100, 141, 200}) bench->Args({n, tube});
+    for (const int n : {22, 32, 45, 71, 100, 141, 200, 316}) bench->Args({n, tube});
   bench->ArgNames({"n", "tube"})->Unit(benchmark::kMillisecond);
 }
 

@@ -5,9 +5,13 @@
 namespace trimquad {
 
 struct MapCounters;
+struct Parametrization;
 
 /// As report.json has them.
 pybind11::dict countersOf(const MapCounters& counters);
+
+/// Points (n, 3), triangles (m, 3) and the images of their corners in quads (m, 3, 2).
+pybind11::tuple arraysOf(const Parametrization& map);
 
 /// Runs a stage without Python's lock, so that regions are worked on at once.
 using Released = pybind11::call_guard<pybind11::gil_scoped_release>;

@@ -10,12 +10,10 @@ namespace py = pybind11;
 namespace trimquad {
 namespace {
 
-Model tessellateShape(const Shape& shape, double edgeLength, double tolerance, double featureAngle,
-                      const std::string& features, const Progress& progress) {
-  TessellateOptions options{.edgeLength = edgeLength, .tolerance = tolerance, .featureAngle = featureAngle};
-  options.features =
-      features == "trim" ? TessellateOptions::Features::Trim : TessellateOptions::Features::Ignore;
-  return tessellate(shape, options, progress);
+Model tessellateShape(const Shape& shape, double edgeLength, double tolerance, const FeatureOptions& features,
+                      const Progress& progress) {
+  return tessellate(shape, {.edgeLength = edgeLength, .tolerance = tolerance, .features = features},
+                    progress);
 }
 
 }  // namespace
@@ -41,7 +39,7 @@ void bindBrep(py::module_& m) {
       "shape_to_freecad", [](const Shape& shape) { return py::bytes(shapeToFreeCAD(shape)); },
       py::arg("shape"));
   m.def("tessellate", &tessellateShape, py::arg("shape"), py::kw_only(), py::arg("edge_length"),
-        py::arg("tolerance"), py::arg("feature_angle"), py::arg("features"), py::arg("progress"), Released());
+        py::arg("tolerance"), py::arg("features"), py::arg("progress"), Released());
   m.def("assemble", &assemble, py::arg("spline"), Released());
   m.def("face_faults", &faceFaults, py::arg("spline"), Released(),
         "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone");

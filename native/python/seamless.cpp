@@ -1,4 +1,6 @@
-#include "trimquad/seamless/seamless_map.h"
+#include "trimquad/seamless/seed.h"
+
+#include <pybind11/stl.h>
 
 #include "bindings.h"
 #include "trimquad/mesh/write_obj.h"
@@ -11,7 +13,9 @@ py::dict countersOf(const MapCounters& counters) {
   py::dict all;
   all["flipped_before"] = counters.flippedBefore;
   all["untangle_iterations"] = counters.untangleIterations;
+  all["conformal_start"] = counters.conformalStart;
   all["convex_start"] = counters.convexStart;
+  all["scaffolded"] = counters.scaffolded;
   all["iterations"] = counters.iterations;
   all["distortion_start"] = counters.distortionStart;
   all["distortion_end"] = counters.distortionEnd;
@@ -21,10 +25,29 @@ py::dict countersOf(const MapCounters& counters) {
 void bindSeamless(py::module_& m) {
   py::class_<SeamlessMap>(m, "SeamlessMap")
       .def_property_readonly("counters", [](const SeamlessMap& map) { return countersOf(map.counters); })
+      .def_property_readonly("arrays", [](const SeamlessMap& map) { return arraysOf(map); })
       .def(
           "to_obj", [](const SeamlessMap& map) { return writeObj(map); }, Released());
-  m.def("seamless_map", &seamlessMap, py::arg("region"), py::arg("field"), py::arg("edge_length"),
-        py::arg("progress"), Released());
+  py::class_<Seed>(m, "Seed")
+      .def_readonly("field", &Seed::field)
+      .def_readonly("map", &Seed::map)
+      .def_readonly("field_edits", &Seed::fieldEdits)
+      .def_readonly("field_seconds", &Seed::fieldSeconds)
+      .def_readonly("seamless_seconds", &Seed::seamlessSeconds);
+  m.def(
+      "seed",
+      [](const Region& region, const std::string& follow, std::optional<FieldGuidance> guidance,
+         double edgeLength, const Progress& progress) {
+        SeedOptions options;
+        options.follow = guidance             ? SeedOptions::Follow::Given
+                         : follow == "smooth" ? SeedOptions::Follow::Smooth
+                                              : SeedOptions::Follow::Curvature;
+        options.guidance = std::move(guidance);
+        options.edgeLength = edgeLength;
+        return seed(region, options, progress);
+      },
+      py::arg("region"), py::arg("follow"), py::arg("guidance"), py::arg("edge_length"), py::arg("progress"),
+      Released(), "follow: 'curvature' or 'smooth', where there is no `guidance`");
 }
 
 }  // namespace trimquad

@@ -120,8 +120,31 @@ def the_command_converts_the_selected_face_and_leaves_the_view_usable():
     assert 30 < quads.FullQuads + quads.TrimmedCells < 120
     assert len(ticks) > 2
     assert not source.ViewObject.Visibility
-    assert shell.ViewObject.Proxy.claimChildren() == [quads]
+    assert shell.ViewObject.Proxy.claimChildren() == [quads, document.GridMap]
     assert quads.ViewObject.Proxy.lines.coordIndex.getNum() > 100
+
+
+@test
+def the_grid_map_is_hidden_until_it_is_asked_for_and_its_parts_can_be_switched():
+    document, source = new_document(wavy_face())
+    convert(document, source, count=80)
+    grid = document.GridMap
+    view = grid.ViewObject
+    assert not view.Visibility
+    view.Visibility = True
+    spin(0.2)
+    assert view.Proxy.grid[1].numVertices.getNum() == len(grid.GridLines) // 2 > 100
+    for name, switch in view.Proxy.switches.items():
+        assert switch.whichChild.getValue() == -3  # all
+        setattr(view, name, False)
+        assert switch.whichChild.getValue() == -1  # none
+        setattr(view, name, True)
+    grid.SingularPoints = [FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(1, 0, 0)]
+    grid.SingularIndices = [1, -1]
+    coordinates, colours, points = view.Proxy.points
+    assert points.numPoints.getValue() == coordinates.point.getNum() == colours.rgb.getNum() == 2
+    red, blue = colours.rgb[0].getValue(), colours.rgb[1].getValue()
+    assert red[0] > red[2] and blue[2] > blue[0]
 
 
 @test
@@ -160,7 +183,7 @@ def saved_and_reopened_the_quads_are_drawn_and_the_options_can_be_edited():
     shell, quads = document.SplineShell, document.QuadMesh
     before = quads.FullQuads
     assert quads.ViewObject.Proxy.lines.coordIndex.getNum() > 100
-    assert shell.ViewObject.Proxy.claimChildren() == [quads]
+    assert shell.ViewObject.Proxy.claimChildren() == [quads, document.GridMap]
     FreeCADGui.ActiveDocument.setEdit(shell.Name)
     spin(0.2)
     shown = PANELS[-1]

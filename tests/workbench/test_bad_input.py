@@ -94,7 +94,7 @@ def test_an_empty_document_is_refused(capsys, tmp_path, document):
         (["--edge-length", "5", "--quads", "9"], "two ways"),
         (["--degree", "9"], "--degree"),
         (["--write", "quads,jpg"], "jpg"),
-        (["--boundary", "aligned"], "not in this version"),
+        (["--field", "stress"], "not in this version"),
         (["--no-such-option"], "--no-such-option"),
     ],
 )

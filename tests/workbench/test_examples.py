@@ -115,16 +115,42 @@ def test_the_number_of_quads_is_about_what_was_asked_for(converted, name):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_maps_give_every_triangle_a_positive_area(converted, name):
-    from trimquad.pictures import triangles_of_map
-
     _, out = converted(name)
     for path in [*out.glob("gridmap*.obj"), *out.glob("seamless*.obj")]:
-        _, images = triangles_of_map(path.read_text())
+        images = map_of_obj(path.read_text())[2]
         a, b = images[:, 1] - images[:, 0], images[:, 2] - images[:, 0]
         assert numpy.all(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0)
 
 
-REGION_KEYS = {"name", "status", "error", "mesh", "singularities", "seamless", "tmesh", "quantization", "embedding",
+def map_of_obj(text):
+    """Points, triangles and corner images of a gridmap.obj or seamless.obj."""
+    lines = [line.split() for line in text.splitlines()]
+    points = numpy.array([[float(w) for w in line[1:]] for line in lines if line[0] == "v"])
+    images = numpy.array([[float(w) for w in line[1:]] for line in lines if line[0] == "vt"])
+    pairs = numpy.array([[[int(n) - 1 for n in w.split("/")] for w in line[1:]] for line in lines if line[0] == "f"])
+    return points, pairs[:, :, 0], images[pairs[:, :, 1]]
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_a_result_gives_its_field_and_its_map(converted, name):
+    result, out = converted(name)
+    for index, item in enumerate(result.regions):
+        path = out / ("gridmap.obj" if len(result.regions) == 1 else f"gridmap-{index}.obj")
+        points, triangles, uv = map_of_obj(path.read_text())
+        assert numpy.array_equal(points, item.map.points)
+        # Triangles may begin at another corner.
+        assert numpy.array_equal(numpy.sort(triangles), numpy.sort(item.map.triangles))
+        assert numpy.allclose(uv.mean(axis=1), item.map.uv.mean(axis=1))
+        corners = item.region.points[item.region.corners]
+        normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= numpy.linalg.norm(normals, axis=1)[:, None]
+        assert item.directions.shape == (item.region.triangles, 3)
+        assert numpy.allclose(numpy.linalg.norm(item.directions, axis=1), 1)
+        assert numpy.abs((item.directions * normals).sum(axis=1)).max() < 1e-9
+        assert sum(s.index for s in item.singularities) == sum(k * n for k, n in item.field.singularities.items())
+
+
+REGION_KEYS = {"name", "status", "error", "mesh", "features", "singularities", "seamless", "tmesh", "quantization", "embedding",
                "gridmap", "quads", "nurbs", "seconds"}
 
 

@@ -26,6 +26,23 @@ def test_making_them_gives_a_valid_shell_and_its_quads(made, sheet):
     assert shell.FailedRegions == []
 
 
+def test_the_map_has_its_grid_lines_on_the_surface(document, made, sheet):
+    grid = document.GridMap
+    assert grid.isValid() and grid.Shell is made[1]
+    assert len(grid.GridLines) % 2 == 0 and len(grid.GridLines) > 500
+    assert grid.Singularities == len(grid.SingularPoints) == len(grid.SingularIndices) == 0
+    assert max(sheet.distToShape(_vertex(p))[0] for p in grid.GridLines[::97]) < 0.2
+    # Every quad has two lines through it, so that lines are about twice as long as all quads' edges.
+    length = sum(a.distanceToPoint(b) for a, b in zip(grid.GridLines[::2], grid.GridLines[1::2]))
+    assert length == pytest.approx(2 * sheet.Area / (sheet.Area / 80) ** 0.5, rel=0.2)
+
+
+def _vertex(point):
+    import Part
+
+    return Part.Vertex(point)
+
+
 def test_a_change_of_the_source_is_followed(document, made, sheet):
     source, shell, quads = made
     bigger = sheet.copy()
@@ -84,7 +101,7 @@ def test_undo_takes_them_away_in_one_step_and_redo_brings_them_back(document, ma
     document.undo()
     assert [o.Name for o in document.Objects] == ["Sheet"]
     document.redo()
-    assert sorted(o.Name for o in document.Objects) == ["QuadMesh", "Sheet", "SplineShell"]
+    assert sorted(o.Name for o in document.Objects) == ["GridMap", "QuadMesh", "Sheet", "SplineShell"]
     assert document.SplineShell.Shape.Area == area
 
 

@@ -31,6 +31,12 @@ from trimquad import Error, Options
         ({"route": "slow"}, "--route must be one of"),
         ({"write": ["quads", "pdf"]}, "not 'pdf'"),
         ({"write": []}, "--write needs at least one"),
+        ({"align": [3]}, "--align is a list of names"),
+        ({"free": [""]}, "--free is a list of names"),
+        ({"field": ""}, "--field must be one of smooth, curvature"),
+        ({"feature_points": ["Edge3"]}, "--feature-points knows names such as Vertex5 and points x,y,z, not 'Edge3'"),
+        ({"feature_points": ["1", "2"]}, "three coordinates for each point; there are 2 numbers"),
+        ({"feature_points": ["1,2,nan"]}, "finite coordinates"),
     ],
 )
 def test_an_unusable_option_is_one_line_that_names_it(given, said):
@@ -44,11 +50,6 @@ def test_an_unusable_option_is_one_line_that_names_it(given, said):
 @pytest.mark.parametrize(
     "given",
     [
-        {"boundary": "aligned"},
-        {"align": ["Edge1"]},
-        {"free": ["Edge1"]},
-        {"features": "align"},
-        {"feature_points": ["Vertex1"]},
         {"field": "stress"},
         {"fill_holes": 1.0},
         {"optimal": True},
@@ -73,12 +74,6 @@ def test_tolerance_and_relative_tolerance_say_the_same():
     assert relative.relative_tolerance == pytest.approx(absolute.relative_tolerance)
 
 
-def test_sharp_edges_cut_cad_models_only_by_default():
-    assert Options().resolved("cad", 1.0, 2.0, 2).features == "trim"
-    assert Options().resolved("mesh", 1.0, 2.0, 2).features == "ignore"
-    assert Options(features="trim").resolved("mesh", 1.0, 2.0, 2).features == "trim"
-
-
 @pytest.mark.parametrize("length, said", [(60.0, "larger than the part"), (1e-4, "1e+11 quads"), (40.0, "no whole quad")])
 def test_an_edge_length_that_does_not_fit_the_part_says_what_it_would_give(length, said):
     with pytest.raises(Error) as caught:
@@ -90,3 +85,23 @@ def test_an_input_without_area_is_refused_in_one_line():
     with pytest.raises(Error) as caught:
         Options().resolved("cad", -1.0, 10.0, 1)
     assert caught.value.kind == "input" and "no area" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["Vertex5", "1", "2.5", "-3e-1", "4", "5", "6"],  # as the command line splits them
+        ["Vertex5", "1,2.5,-3e-1", "4;5;6"],
+        [(1, 2.5, -0.3), "Vertex5", (4, 5, 6)],
+    ],
+)
+def test_feature_points_are_names_and_coordinates_in_any_writing(given):
+    vertices, points = Options(feature_points=given).feature_vertices_and_points()
+    assert vertices == ["Vertex5"]
+    assert points == [(1.0, 2.5, -0.3), (4.0, 5.0, 6.0)]
+
+
+def test_sharp_edges_trim_cad_and_align_meshes_unless_told_otherwise():
+    assert Options().resolved("cad", 1000.0, 50.0, 2).features == "trim"
+    assert Options().resolved("mesh", 1000.0, 50.0, 2).features == "align"
+    assert Options(features="ignore").resolved("mesh", 1000.0, 50.0, 2).features == "ignore"

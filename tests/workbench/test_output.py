@@ -128,7 +128,7 @@ def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
     document = FreeCAD.openDocument(str(tmp_path / "trimquad.FCStd"))
     try:
         kinds = sorted(o.TypeId for o in document.Objects)
-        assert kinds == ["Mesh::FeaturePython", "Part::Feature"]
+        assert kinds == ["App::FeaturePython", "Mesh::FeaturePython", "Part::Feature"]
         assert document.QuadMesh.Mesh.CountFacets > 50
     finally:
         FreeCAD.closeDocument(document.Name)

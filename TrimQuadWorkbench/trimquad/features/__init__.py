@@ -3,17 +3,20 @@
     import trimquad.features
     shell = trimquad.features.make(document, document.Box, ["Face1"], EdgeLength=5)
 """
+from .grid_map import GridMap
 from .quad_mesh import QuadMesh
 from .spline_shell import SplineShell
 
 
 def make(document, source, faces=(), **properties):
-    """Add the B-spline faces and the quads of `source` (an object with a shape or a mesh) to its document.
+    """Add the B-spline faces, the quads and the grid map of `source` (an object with a shape or a mesh) to its document.
 
     faces        names such as 'Face3'; all where empty
-    properties   of the SplineShell: EdgeLength, Quads, Tolerance, RelativeTolerance, Degree, FeatureAngle, Features
+    properties   of the SplineShell: EdgeLength, Quads, Tolerance, RelativeTolerance, Degree, FeatureAngle, Features,
+                 Boundary, Align, Free, FeaturePoints, Field
 
-    Returns the SplineShell, computed; its quads depend on it. In a GUI the source is hidden behind the result.
+    Returns the SplineShell, computed; its quads and map depend on it. In a GUI the source is hidden behind the result,
+    and the map is hidden until it is asked for.
     """
     shell = document.addObject("Part::FeaturePython", "SplineShell")
     SplineShell(shell)
@@ -25,6 +28,10 @@ def make(document, source, faces=(), **properties):
     QuadMesh(quads)
     quads.Label = f"{source.Label} quads"
     quads.Shell = shell
+    grid = document.addObject("App::FeaturePython", "GridMap")
+    GridMap(grid)
+    grid.Label = f"{source.Label} grid map"
+    grid.Shell = shell
     import FreeCAD
 
     if FreeCAD.GuiUp:
@@ -32,6 +39,8 @@ def make(document, source, faces=(), **properties):
 
         view_providers.SplineShellView(shell.ViewObject)
         view_providers.QuadMeshView(quads.ViewObject)
+        view_providers.GridMapView(grid.ViewObject)
+        grid.ViewObject.Visibility = False
         source.ViewObject.Visibility = False
-    document.recompute([shell, quads])
+    document.recompute([shell, quads, grid])
     return shell

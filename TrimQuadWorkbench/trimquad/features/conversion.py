@@ -2,11 +2,12 @@
 same input costs nothing."""
 import dataclasses
 import hashlib
+import os
 from collections import OrderedDict
 
 from ..convert import convert
 from ..error import input_error
-from ..options import Options
+from ..options import FIELDS, Options
 from ..source import Source
 
 KEPT = 8
@@ -59,4 +60,7 @@ def keep(source, options, result):
 def _key(source, options: Options):
     digest = hashlib.sha256(source.content())
     digest.update(repr((source.faces, dataclasses.astuple(options))).encode())
+    if options.field not in FIELDS and os.path.isfile(options.field):
+        with open(options.field, "rb") as stream:
+            digest.update(stream.read())
     return digest.hexdigest()

@@ -8,8 +8,13 @@ PROPERTIES = (
     ("App::PropertyLength", "EdgeLength", "Quads", "Length of a quad's edge; 0: from the number of quads", 0.0),
     ("App::PropertyInteger", "Quads", "Quads", "About how many quads, where no edge length is given", 1000),
     ("App::PropertyAngle", "FeatureAngle", "Quads", "Edges sharper than this separate surfaces", 30.0),
-    ("App::PropertyEnumeration", "Features", "Quads", "What sharp edges do; automatic: trim for CAD, ignore for meshes",
-     ["automatic", "trim", "ignore"]),
+    ("App::PropertyEnumeration", "Features", "Quads", "What sharp edges do; automatic: trim for CAD, align for meshes",
+     ["automatic", "trim", "align", "ignore"]),
+    ("App::PropertyEnumeration", "Boundary", "Quads", "Whether quads follow the boundary", ["free", "aligned"]),
+    ("App::PropertyStringList", "Align", "Quads", "Edges that quads follow: Edge3; of meshes loop:2, angle:30-90", []),
+    ("App::PropertyStringList", "Free", "Quads", "Edges that quads need not follow", []),
+    ("App::PropertyStringList", "FeaturePoints", "Quads", "Points that become vertices: Vertex5 or x,y,z", []),
+    ("App::PropertyString", "Field", "Quads", "What the quads follow: curvature, smooth, or a file", "curvature"),
     ("App::PropertyLength", "Tolerance", "B-splines", "Largest deviation; 0: from the relative tolerance", 0.0),
     ("App::PropertyFloat", "RelativeTolerance", "B-splines", "Largest deviation as a fraction of the diagonal", 1e-3),
     ("App::PropertyInteger", "Degree", "B-splines", "Degree of the B-splines, 2 to 5", 3),
@@ -35,6 +40,10 @@ class SplineShell:
                 obj.addProperty(kind, name, group, about)
                 if value is not None:
                     setattr(obj, name, value)
+            elif kind == "App::PropertyEnumeration" and value != obj.getEnumerationsOfProperty(name):
+                chosen = getattr(obj, name)
+                setattr(obj, name, value)  # an earlier version knew fewer
+                setattr(obj, name, chosen)
         for name in RESULTS:
             obj.setEditorMode(name, 1)
 
@@ -71,6 +80,11 @@ def options_of(obj):
         quads=None if edge_length else obj.Quads,
         features=None if obj.Features == "automatic" else obj.Features,
         feature_angle=float(obj.FeatureAngle),
+        boundary=obj.Boundary,
+        align=list(obj.Align),
+        free=list(obj.Free),
+        feature_points=list(obj.FeaturePoints),
+        field=obj.Field,
         tolerance=tolerance or None,
         relative_tolerance=None if tolerance else obj.RelativeTolerance,
         degree=obj.Degree,

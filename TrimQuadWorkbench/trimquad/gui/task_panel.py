@@ -1,4 +1,6 @@
 """The task panel of a conversion: options, progress, Cancel."""
+import dataclasses
+
 import FreeCAD
 import FreeCADGui
 from PySide import QtCore
@@ -122,10 +124,11 @@ class ConvertPanel:
 
     def _options(self):
         p = self.properties()
-        return Options(
+        return dataclasses.replace(
+            # What the panel does not show stays as it is.
+            options_of(self.shell) if self.shell else Options(),
             edge_length=p["EdgeLength"] or None,
             quads=None if p["EdgeLength"] else p["Quads"],
-            features=None if self.shell is None or self.shell.Features == "automatic" else self.shell.Features,
             feature_angle=p["FeatureAngle"],
             tolerance=p["Tolerance"] or None,
             relative_tolerance=None if p["Tolerance"] else p["RelativeTolerance"],

@@ -1,7 +1,8 @@
-"""How SplineShell and QuadMesh look in the tree and in the 3D view."""
+"""How SplineShell, QuadMesh and GridMap look in the tree and in the 3D view."""
 import FreeCADGui
 from pivy import coin
 
+from ..colours import point_colour
 from ..features.quad_mesh import polygons_of
 from . import icon_path
 
@@ -11,6 +12,9 @@ LINE_WIDTH = 1.5
 # The triangles of the quads lie in the B-spline faces: pushed back a little, they do not flicker through them, and
 # the lines stand out of both.
 PUSHED_BACK = 2.0
+GRID_COLOUR = (0.20, 0.42, 0.68)
+ALIGNED_COLOUR = (0.04, 0.49, 0.24)
+ALIGNED_WIDTH = 3.0
 
 
 class _View:
@@ -109,3 +113,119 @@ class QuadMeshView(_View):
 
     def getIcon(self):
         return icon_path("TrimQuad_QuadMesh")
+
+
+class GridMapView(_View):
+    """Draws the grid lines, the aligned edges and the singular points, each of which can be switched off."""
+
+    PARTS = (
+        ("ShowGridLines", "Draw the lines on which a coordinate of the map is a whole number"),
+        ("ShowAlignedEdges", "Draw the edges that grid lines follow"),
+        ("ShowSingularPoints", "Draw the vertices where other than four quads meet: red where fewer do, blue where more"),
+    )
+
+    def __init__(self, vobj):
+        self._ensure_properties(vobj)
+        super().__init__(vobj)
+
+    def _ensure_properties(self, vobj):
+        for name, about in self.PARTS:
+            if not hasattr(vobj, name):
+                vobj.addProperty("App::PropertyBool", name, "Map", about)
+                setattr(vobj, name, True)
+        if not hasattr(vobj, "PointSize"):
+            vobj.addProperty("App::PropertyFloat", "PointSize", "Map", "Size of the singular points in pixels")
+            vobj.PointSize = 9.0
+
+    def attach(self, vobj):
+        self.Object = vobj.Object
+        self._ensure_properties(vobj)
+        self.root = coin.SoSeparator()
+        light = coin.SoLightModel()
+        light.model.setValue(coin.SoLightModel.BASE_COLOR)
+        pick = coin.SoPickStyle()
+        pick.style.setValue(coin.SoPickStyle.UNPICKABLE)
+        self.root.addChild(light)
+        self.root.addChild(pick)
+        self.switches = {}
+        self.grid = self._lines("ShowGridLines", GRID_COLOUR, LINE_WIDTH)
+        self.aligned = self._lines("ShowAlignedEdges", ALIGNED_COLOUR, ALIGNED_WIDTH)
+        self.points = self._points()
+        vobj.addDisplayMode(self.root, "Map")
+        for name in ("GridLines", "AlignedEdges", "SingularPoints"):
+            self.updateData(vobj.Object, name)
+        for name in (*self.switches, "PointSize"):
+            self.onChanged(vobj, name)
+
+    def getDisplayModes(self, vobj):
+        return ["Map"]
+
+    def getDefaultDisplayMode(self):
+        return "Map"
+
+    def setDisplayMode(self, mode):
+        return mode
+
+    def _switched(self, name):
+        switch, separator = coin.SoSwitch(), coin.SoSeparator()
+        switch.whichChild.setValue(coin.SO_SWITCH_ALL)
+        switch.addChild(separator)
+        self.root.addChild(switch)
+        self.switches[name] = switch
+        return separator
+
+    def _lines(self, name, colour, width):
+        separator = self._switched(name)
+        base, style = coin.SoBaseColor(), coin.SoDrawStyle()
+        base.rgb.setValue(*colour)
+        style.lineWidth.setValue(width)
+        coordinates, lines = coin.SoCoordinate3(), coin.SoLineSet()
+        for node in (base, style, coordinates, lines):
+            separator.addChild(node)
+        return coordinates, lines
+
+    def _points(self):
+        separator = self._switched("ShowSingularPoints")
+        binding = coin.SoMaterialBinding()
+        binding.value.setValue(coin.SoMaterialBinding.PER_VERTEX)
+        self.style, colours = coin.SoDrawStyle(), coin.SoBaseColor()
+        coordinates, points = coin.SoCoordinate3(), coin.SoPointSet()
+        for node in (binding, self.style, colours, coordinates, points):
+            separator.addChild(node)
+        return coordinates, colours, points
+
+    def updateData(self, obj, name):
+        if not hasattr(self, "points"):
+            return
+        if name in ("GridLines", "AlignedEdges"):
+            coordinates, lines = self.grid if name == "GridLines" else self.aligned
+            ends = [tuple(p) for p in getattr(obj, name, [])]
+            _set_points(coordinates, ends)
+            lines.numVertices.setNum(0)
+            lines.numVertices.setValues(0, len(ends) // 2, [2] * (len(ends) // 2))
+        elif name in ("SingularPoints", "SingularIndices"):
+            coordinates, colours, points = self.points
+            places, indices = getattr(obj, "SingularPoints", []), getattr(obj, "SingularIndices", [])
+            if len(places) != len(indices):  # one of the two is still to come
+                return
+            _set_points(coordinates, [tuple(p) for p in places])
+            colours.rgb.setNum(0)
+            colours.rgb.setValues(0, len(indices), [point_colour(i) for i in indices])
+            points.numPoints.setValue(len(places))
+
+    def onChanged(self, vobj, name):
+        if not hasattr(self, "switches"):
+            return
+        if name in self.switches:
+            shown = coin.SO_SWITCH_ALL if getattr(vobj, name) else coin.SO_SWITCH_NONE
+            self.switches[name].whichChild.setValue(shown)
+        elif name == "PointSize":
+            self.style.pointSize.setValue(vobj.PointSize)
+
+    def getIcon(self):
+        return icon_path("TrimQuad_GridMap")
+
+
+def _set_points(coordinates, points):
+    coordinates.point.setNum(0)
+    coordinates.point.setValues(0, len(points), points)

@@ -1,5 +1,6 @@
 #include "trimquad/base/constraint_basis.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -56,10 +57,32 @@ void ConstraintBasis::substitute(std::map<Index, std::int64_t>& terms, std::int6
   }
 }
 
+bool ConstraintBasis::isReduced(const Row& row) const {
+  return std::none_of(row.terms.begin(), row.terms.end(),
+                      [&](const auto& term) { return rows_[term.first].dependent; });
+}
+
+/// Makes a dependent variable depend on free ones only. What it depended on is reduced first and stays so,
+/// which keeps long chains of equations linear, as path compression does.
+void ConstraintBasis::reduce(Index variable) {
+  std::vector<Index> path{variable};
+  while (!path.empty()) {
+    Row& row = rows_[path.back()];
+    const size_t length = path.size();
+    for (const auto& [other, factor] : row.terms)
+      if (rows_[other].dependent && !isReduced(rows_[other])) path.push_back(other);
+    if (path.size() > length) continue;
+    substitute(row.terms, row.constant, row.divisor);
+    path.pop_back();
+  }
+}
+
 bool ConstraintBasis::addEquation(const std::vector<Term>& terms, std::int64_t constant) {
   std::map<Index, std::int64_t> sum;
   for (const auto& term : terms)
     if ((sum[term.variable] += term.factor) == 0) sum.erase(term.variable);
+  for (const auto& [variable, factor] : sum)
+    if (rows_[variable].dependent) reduce(variable);
   std::int64_t right = -constant, divisor = 1;  // 0 = sum + right
   substitute(sum, right, divisor);
   if (sum.empty()) return right == 0;
@@ -95,7 +118,7 @@ void ConstraintBasis::finish() {
       entries.emplace_back(i, position[i], 1.0);
       continue;
     }
-    substitute(row.terms, row.constant, row.divisor);
+    reduce(i);
     for (const auto& [variable, factor] : row.terms)
       entries.emplace_back(i, position[variable], double(factor) / double(row.divisor));
     offset_[i] = double(row.constant) / double(row.divisor);

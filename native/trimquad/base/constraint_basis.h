@@ -48,6 +48,8 @@ class ConstraintBasis {
     std::map<Index, std::int64_t> terms;
     bool dependent = false;
   };
+  bool isReduced(const Row& row) const;
+  void reduce(Index variable);
   void substitute(std::map<Index, std::int64_t>& terms, std::int64_t& constant, std::int64_t& divisor) const;
 
   std::vector<Row> rows_;

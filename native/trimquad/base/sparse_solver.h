@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 #include <string>
+#include <vector>
+
+#include "trimquad/base/supernodal_cholesky.h"
 
 namespace trimquad {
 
@@ -13,17 +15,20 @@ class SparseSolver {
   /// \param stage named in the error when the matrix is not positive definite
   explicit SparseSolver(std::string stage) : stage_(std::move(stage)) {}
 
-  /// Throws Error(Stage) where the matrix is singular.
+  /// Throws Error(Stage) where the matrix is not positive definite. Its lower triangle is read.
   void factorize(const Eigen::SparseMatrix<double>& matrix);
   /// Whether the matrix was positive definite, instead of throwing.
   bool tryFactorize(const Eigen::SparseMatrix<double>& matrix);
 
+  /// One column for each right-hand side.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const { return factor_.solve(rhs); }
 
  private:
+  bool isAnalysed(const Eigen::SparseMatrix<double>& matrix) const;
+
   std::string stage_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  Eigen::Index analysedSize_ = -1, analysedNonZeros_ = -1;
+  SupernodalCholesky factor_;
+  std::vector<int> outer_, inner_;  // the pattern analysed
 };
 
 }  // namespace trimquad

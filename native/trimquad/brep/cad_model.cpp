@@ -9,6 +9,7 @@
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopTools_ListOfShape.hxx>
 #include <TopoDS.hxx>
+#include <array>
 #include <numeric>
 
 #include "trimquad/base/error.h"
@@ -47,27 +48,41 @@ int connectedGroups(const TopoDS_Shape& shape) {
   return groups;
 }
 
-/// A copy of a shape, and what became of the original's edges and faces in it.
+/// A copy of a shape, and what became of the original's vertices, edges and faces in it.
 struct Traced {
   TopoDS_Shape shape;
-  TopTools_DataMapOfShapeInteger number;  ///< of the original, by element of the copy; from 1
+  TopTools_DataMapOfShapeInteger number;                ///< of the original, by element of the copy; from 1
+  std::vector<std::vector<TopoDS_Shape>> edge, vertex;  ///< by number of the original, from 0: in the copy
+
+  std::vector<std::vector<TopoDS_Shape>>* images(TopAbs_ShapeEnum kind) {
+    return kind == TopAbs_EDGE ? &edge : kind == TopAbs_VERTEX ? &vertex : nullptr;
+  }
+  const std::vector<std::vector<TopoDS_Shape>>* images(TopAbs_ShapeEnum kind) const {
+    return kind == TopAbs_EDGE ? &edge : kind == TopAbs_VERTEX ? &vertex : nullptr;
+  }
 };
+
+constexpr std::array kKinds{TopAbs_VERTEX, TopAbs_EDGE, TopAbs_FACE};
 
 template <class Image>
 void trace(const TopoDS_Shape& from, const TopoDS_Shape& numbering, Image&& image, Traced& to) {
-  for (const auto kind : {TopAbs_EDGE, TopAbs_FACE}) {
+  for (const auto kind : kKinds) {
     const auto named = elements(numbering, kind), used = elements(from, kind);
+    auto* const images = to.images(kind);
+    if (images) images->resize(named.Extent());
     for (int i = 1; i <= named.Extent(); ++i) {
       if (!used.Contains(named(i))) continue;
       const TopoDS_Shape copy = image(used(used.FindIndex(named(i))));
-      if (!copy.IsNull() && !to.number.IsBound(copy)) to.number.Bind(copy, i);
+      if (copy.IsNull()) continue;
+      if (!to.number.IsBound(copy)) to.number.Bind(copy, i);
+      if (images) (*images)[i - 1].push_back(copy);
     }
   }
 }
 
 Traced copied(const TopoDS_Shape& shape, const TopoDS_Shape& numbering) {
   BRepBuilderAPI_Copy copy(shape, false, false);
-  Traced result{copy.Shape(), {}};
+  Traced result{copy.Shape(), {}, {}, {}};
   trace(
       shape, numbering, [&](const TopoDS_Shape& s) { return copy.ModifiedShape(s); }, result);
   return result;
@@ -77,19 +92,29 @@ Traced sewn(const Traced& apart, double diagonal) {
   BRepBuilderAPI_Sewing sewing(kSewingTolerance * diagonal);
   sewing.Add(apart.shape);
   sewing.Perform();
-  Traced result{sewing.SewedShape(), {}};
+  Traced result{sewing.SewedShape(), {}, {}, {}};
   if (result.shape.IsNull() ||
       elements(result.shape, TopAbs_FACE).Extent() != elements(apart.shape, TopAbs_FACE).Extent())
     return apart;
-  for (const auto kind : {TopAbs_EDGE, TopAbs_FACE}) {
+  for (const auto kind : kKinds) {
     const auto before = elements(apart.shape, kind), after = elements(result.shape, kind);
-    for (int i = 1; i <= before.Extent(); ++i) {
-      const TopoDS_Shape image = sewing.ModifiedSubShape(before(i));
-      // An edge that sewing cut into sections answers with a wire or compound of them.
-      for (TopExp_Explorer part(image, kind); part.More(); part.Next())
-        if (after.Contains(part.Current()) && !result.number.IsBound(part.Current()))
-          result.number.Bind(part.Current(), apart.number(before(i)));
-    }
+    // An edge that sewing cut into sections answers with a wire or compound of them.
+    const auto imagesOf = [&](const TopoDS_Shape& element) {
+      std::vector<TopoDS_Shape> images;
+      for (TopExp_Explorer part(sewing.ModifiedSubShape(element), kind); part.More(); part.Next())
+        if (after.Contains(part.Current())) images.push_back(part.Current());
+      return images;
+    };
+    for (int i = 1; i <= before.Extent(); ++i)
+      for (const auto& image : imagesOf(before(i)))
+        if (!result.number.IsBound(image) && apart.number.IsBound(before(i)))
+          result.number.Bind(image, apart.number(before(i)));
+    if (auto* const images = result.images(kind))
+      for (const auto& copies : *apart.images(kind)) {
+        auto& named = images->emplace_back();
+        for (const auto& copy : copies)
+          for (const auto& image : imagesOf(copy)) named.push_back(image);
+      }
   }
   return result;
 }
@@ -118,6 +143,17 @@ void collectFaces(const Traced& traced, CadModel& model) {
   }
 }
 
+std::vector<std::vector<int>> indices(const std::vector<std::vector<TopoDS_Shape>>& images,
+                                      const TopTools_IndexedMapOfShape& elements) {
+  std::vector<std::vector<int>> result;
+  for (const auto& copies : images) {
+    auto& named = result.emplace_back();
+    for (const auto& copy : copies)
+      if (elements.Contains(copy)) named.push_back(elements.FindIndex(copy) - 1);
+  }
+  return result;
+}
+
 void collectEdges(const Traced& traced, CadModel& model) {
   const auto vertices = elements(traced.shape, TopAbs_VERTEX);
   for (int i = 1; i <= vertices.Extent(); ++i) {
@@ -136,6 +172,8 @@ void collectEdges(const Traced& traced, CadModel& model) {
     entry.start = vertices.FindIndex(start) - 1;
     entry.end = vertices.FindIndex(end) - 1;
   }
+  model.edgesNamed = indices(traced.edge, model.edgeNumbers);
+  model.verticesNamed = indices(traced.vertex, vertices);
 }
 
 }  // namespace

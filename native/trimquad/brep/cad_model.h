@@ -35,6 +35,9 @@ struct CadModel {
   std::vector<CadEdge> edges;
   std::vector<Eigen::Vector3d> vertices;
   TopTools_IndexedMapOfShape edgeNumbers;  ///< from 1
+  /// By the number in a name ("Edge3" is at 2): what became of it here. Sewing makes one edge of two, and
+  /// several of one.
+  std::vector<std::vector<int>> edgesNamed, verticesNamed;
 
   int edgeIndex(const TopoDS_Shape& edge) const { return edgeNumbers.FindIndex(edge) - 1; }
 };

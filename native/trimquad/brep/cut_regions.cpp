@@ -7,6 +7,7 @@
 #include "trimquad/base/error.h"
 #include "trimquad/brep/cad_curve.h"
 #include "trimquad/brep/cad_surface.h"
+#include "trimquad/mesh/join_regions.h"
 
 namespace trimquad {
 namespace {
@@ -14,8 +15,9 @@ namespace {
 class RegionCutter {
  public:
   RegionCutter(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-               const FeatureEdges& features, const std::vector<char>& reversed)
-      : cad_(cad), mesh_(mesh), uses_(uses), features_(features), reversed_(reversed) {}
+               const FeatureEdges& features, const std::vector<char>& points,
+               const std::vector<char>& reversed)
+      : cad_(cad), mesh_(mesh), uses_(uses), features_(features), points_(points), reversed_(reversed) {}
 
   CutModel run() {
     makeCurves();
@@ -26,7 +28,9 @@ class RegionCutter {
     for (const auto& triangle : mesh_.triangles)
       for (const int v : triangle.vertex) box.extend(mesh_.vertices[v].point);
     model_.diagonal = box.diagonal().norm();
-    return {std::move(model_), std::move(creases_)};
+    auto surfaces = joinedSurfaces(groups);
+    return {std::move(model_), std::move(creases_), std::move(inner_), std::move(aligned_),
+            std::move(surfaces)};
   }
 
  private:
@@ -54,6 +58,8 @@ class RegionCutter {
       curveOfEdge_[e] = CurveId{int(model_.curves.size())};
       const CornerId start = cornerAt(edge.start), end = cornerAt(edge.end);
       model_.curves.push_back({cadCurve(edge), start, end, edge.name});
+      inner_.push_back(features_.inner[e]);
+      aligned_.push_back(features_.aligned[e]);
     }
   }
 
@@ -134,6 +140,8 @@ class RegionCutter {
         if (features_.crease[triangle.side[k]]) creases.insert({a, b});
       }
     }
+    for (const auto v : region.mesh.vertices())
+      if (points_[origin[v.idx()]]) region.featurePoints.push_back(v);
     creases_.push_back(std::move(creases));
     model_.regions.push_back(std::move(region));
   }
@@ -176,22 +184,43 @@ class RegionCutter {
     }
   }
 
+  std::vector<std::shared_ptr<const TrueSurface>> joinedSurfaces(
+      const std::vector<std::vector<int>>& groups) const {
+    const std::vector<int> joined = joinedRegions(model_, inner_);
+    std::vector<std::vector<int>> triangles;
+    std::vector<int> parts, part;
+    for (size_t r = 0; r < joined.size(); ++r) {
+      if (joined[r] == int(triangles.size()))
+        triangles.emplace_back(), parts.push_back(0), part.push_back(int(r));
+      auto& all = triangles[joined[r]];
+      all.insert(all.end(), groups[r].begin(), groups[r].end());
+      ++parts[joined[r]];
+    }
+    std::vector<std::shared_ptr<const TrueSurface>> surfaces;
+    for (size_t j = 0; j < triangles.size(); ++j)
+      surfaces.push_back(parts[j] == 1 ? model_.regions[part[j]].surface
+                                       : cadSurface(cad_, mesh_, triangles[j], reversed_));
+    return surfaces;
+  }
+
   const CadModel& cad_;
   const WeldedMesh& mesh_;
   const SideUses& uses_;
   const FeatureEdges& features_;
-  const std::vector<char>& reversed_;
+  const std::vector<char>&points_, &reversed_;
   std::vector<std::optional<CurveId>> curveOfEdge_;
   std::vector<std::optional<CornerId>> cornerOfVertex_;
   Model model_;
   std::vector<Creases> creases_;
+  std::vector<char> inner_, aligned_;  ///< by curve
 };
 
 }  // namespace
 
 CutModel cutRegions(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-                    const FeatureEdges& features, const std::vector<char>& reversed) {
-  return RegionCutter(cad, mesh, uses, features, reversed).run();
+                    const FeatureEdges& features, const std::vector<char>& points,
+                    const std::vector<char>& reversed) {
+  return RegionCutter(cad, mesh, uses, features, points, reversed).run();
 }
 
 }  // namespace trimquad

@@ -1,7 +1,10 @@
 #include "trimquad/brep/feature_edges.h"
 
 #include <Eigen/Geometry>
+#include <charconv>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
@@ -76,9 +79,102 @@ class FaceGroups {
   std::vector<char> flipped_;
 };
 
+/// How sharp the edges of a model are.
+struct Sharpness {
+  std::vector<char> free;    ///< by CAD edge: whether only one face is there
+  std::vector<char> used;    ///< by CAD edge: whether any is
+  std::vector<char> sharp;   ///< by CAD edge: on most of its length
+  std::vector<char> crease;  ///< by side of the mesh
+};
+
 bool runsForward(const WeldedMesh& mesh, const std::pair<int, int>& use) {
   const Triangle& triangle = mesh.triangles[use.first];
   return mesh.sides[triangle.side[use.second]].from == triangle.vertex[use.second];
+}
+
+Sharpness sharpness(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
+                    const std::vector<char>& reversed, double angle, double reach) {
+  std::vector<double> sharp(model.edges.size(), 0), smooth(model.edges.size(), 0);
+  const std::vector<char> no(model.edges.size(), 0);
+  Sharpness result{no, no, no, std::vector<char>(mesh.sides.size(), 0)};
+  for (size_t s = 0; s < uses.size(); ++s) {
+    const auto& side = mesh.sides[s];
+    if (!side.cadEdge || uses[s].empty()) continue;
+    result.used[*side.cadEdge] = 1;
+    if (uses[s].size() == 1) {
+      result.free[*side.cadEdge] = 1;
+      continue;
+    }
+    if (std::isinf(angle)) continue;
+    const double length = (mesh.vertices[side.to].point - mesh.vertices[side.from].point).norm();
+    const auto turnAt = [&](double fraction, double distance) -> std::optional<double> {
+      std::array<Vector3d, 2> normal;
+      for (int i = 0; i < 2; ++i) {
+        const auto& [t, k] = uses[s][i];
+        normal[i] = normalBesideSide(model, mesh, mesh.triangles[t], k, fraction,
+                                     runsForward(mesh, uses[s][i]), distance);
+        if (reversed[mesh.triangles[t].face]) normal[i] = -normal[i];
+      }
+      if (normal[0].isZero() || normal[1].isZero()) return {};
+      return std::atan2(normal[0].cross(normal[1]).norm(), normal[0].dot(normal[1]));
+    };
+    for (const double fraction : kSamples) {
+      if (const auto turn = turnAt(fraction, 0)) (*turn > angle ? sharp : smooth)[*side.cadEdge] += length;
+      if (turnAt(fraction, reach).value_or(0) > angle) result.crease[s] = 1;
+    }
+  }
+  for (size_t e = 0; e < sharp.size(); ++e) result.sharp[e] = sharp[e] > smooth[e];
+  return result;
+}
+
+/// Takes back the cuts along chains of sharp edges that end inside a region: they separate nothing there.
+void dropDangling(const CadModel& model, const std::vector<char>& isFree, std::vector<char>& cut) {
+  std::vector<int> degree(model.vertices.size(), 0);
+  const auto endsOf = [&](size_t e) { return std::array<int, 2>{model.edges[e].start, model.edges[e].end}; };
+  for (size_t e = 0; e < cut.size(); ++e)
+    if (cut[e])
+      for (const int v : endsOf(e)) ++degree[v];
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t e = 0; e < cut.size(); ++e) {
+      if (!cut[e] || isFree[e]) continue;
+      const auto [a, b] = endsOf(e);
+      if (degree[a] != 1 && degree[b] != 1) continue;
+      cut[e] = 0;
+      --degree[a], --degree[b];
+      changed = true;
+    }
+  }
+}
+
+/// The elements that names like "Edge3" mean.
+std::vector<int> named(const std::vector<std::string>& names, const std::string& prefix,
+                       const std::vector<std::vector<int>>& elements) {
+  std::vector<int> result;
+  for (const std::string& name : names) {
+    size_t number = 0;
+    const char *begin = name.data() + std::min(prefix.size(), name.size()), *end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(begin, end, number);
+    if (!name.starts_with(prefix) || error != std::errc{} || stop != end || number < 1 ||
+        number > elements.size())
+      throw inputError("options", "the shape has no " + name + "; its names run from " + prefix + "1 to " +
+                                      prefix + std::to_string(elements.size()));
+    const auto& found = elements[number - 1];
+    if (found.empty()) throw inputError("options", name + " is not part of the faces that are converted");
+    result.insert(result.end(), found.begin(), found.end());
+  }
+  return result;
+}
+
+std::vector<char> chosen(const CadModel& model, const Sharpness& edges,
+                         const std::vector<std::string>& names) {
+  std::vector<char> result(model.edges.size(), 0);
+  for (const int e : named(names, "Edge", model.edgesNamed)) {
+    if (!edges.used[e])
+      throw inputError("options", model.edges[e].name + " has no length, or no face ends there");
+    result[e] = 1;
+  }
+  return result;
 }
 
 }  // namespace
@@ -158,60 +254,43 @@ std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh) {
 }
 
 FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                          const std::vector<char>& reversed, double angle, double reach) {
-  std::vector<double> sharp(model.edges.size(), 0), smooth(model.edges.size(), 0);
-  std::vector<char> cut(model.edges.size(), 0), crease(mesh.sides.size(), 0);
-  for (size_t s = 0; s < uses.size(); ++s) {
-    const auto& side = mesh.sides[s];
-    if (!side.cadEdge || uses[s].empty()) continue;
-    if (uses[s].size() == 1) {
-      cut[*side.cadEdge] = 1;
-      continue;
-    }
-    if (std::isinf(angle)) continue;
-    const double length = (mesh.vertices[side.to].point - mesh.vertices[side.from].point).norm();
-    const auto turnAt = [&](double fraction, double distance) -> std::optional<double> {
-      std::array<Vector3d, 2> normal;
-      for (int i = 0; i < 2; ++i) {
-        const auto& [t, k] = uses[s][i];
-        normal[i] = normalBesideSide(model, mesh, mesh.triangles[t], k, fraction,
-                                     runsForward(mesh, uses[s][i]), distance);
-        if (reversed[mesh.triangles[t].face]) normal[i] = -normal[i];
-      }
-      if (normal[0].isZero() || normal[1].isZero()) return {};
-      return std::atan2(normal[0].cross(normal[1]).norm(), normal[0].dot(normal[1]));
-    };
-    for (const double fraction : kSamples) {
-      if (const auto turn = turnAt(fraction, 0)) (*turn > angle ? sharp : smooth)[*side.cadEdge] += length;
-      if (turnAt(fraction, reach).value_or(0) > angle) crease[s] = 1;
-    }
+                          const std::vector<char>& reversed, const FeatureOptions& options, double reach) {
+  using Sharp = FeatureOptions::Sharp;
+  const double angle = options.sharp == Sharp::Ignore ? std::numeric_limits<double>::infinity()
+                                                      : options.angle * std::numbers::pi / 180;
+  const Sharpness edges = sharpness(model, mesh, uses, reversed, angle, reach);
+  const auto chosenAligned = chosen(model, edges, options.align), freed = chosen(model, edges, options.free);
+  FeatureEdges result;
+  result.cut = edges.free;
+  if (options.sharp == Sharp::Trim) {
+    for (size_t e = 0; e < model.edges.size(); ++e) result.cut[e] |= edges.sharp[e];
+    dropDangling(model, edges.free, result.cut);
   }
-  for (size_t e = 0; e < cut.size(); ++e)
-    if (sharp[e] > smooth[e]) cut[e] = 1;
+  for (size_t e = 0; e < model.edges.size(); ++e) {
+    const bool byDefault =
+        result.cut[e] ? options.alignBoundary : options.sharp == Sharp::Align && edges.sharp[e];
+    result.aligned.push_back((byDefault || chosenAligned[e]) && !freed[e]);
+    result.inner.push_back(result.aligned[e] && !result.cut[e]);
+    result.cut[e] |= result.inner[e];
+  }
+  result.crease = edges.crease;
+  for (size_t s = 0; s < result.crease.size(); ++s)
+    if (result.crease[s] && result.cut[*mesh.sides[s].cadEdge]) result.crease[s] = 0;
+  return result;
+}
 
-  // Chains of sharp edges that end inside a region separate nothing there.
-  std::vector<int> degree(mesh.vertices.size(), 0);
-  const auto endsOf = [&](size_t e) { return std::array<int, 2>{model.edges[e].start, model.edges[e].end}; };
-  std::vector<char> isFree(model.edges.size(), 0);
-  for (size_t s = 0; s < uses.size(); ++s)
-    if (mesh.sides[s].cadEdge && uses[s].size() == 1) isFree[*mesh.sides[s].cadEdge] = 1;
-  for (size_t e = 0; e < cut.size(); ++e)
-    if (cut[e])
-      for (const int v : endsOf(e)) ++degree[v];
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (size_t e = 0; e < cut.size(); ++e) {
-      if (!cut[e] || isFree[e]) continue;
-      const auto [a, b] = endsOf(e);
-      if (degree[a] != 1 && degree[b] != 1) continue;
-      cut[e] = 0;
-      --degree[a], --degree[b];
-      changed = true;
-    }
-  }
-  for (size_t s = 0; s < crease.size(); ++s)
-    if (crease[s] && cut[*mesh.sides[s].cadEdge]) crease[s] = 0;
-  return {std::move(cut), std::move(crease)};
+std::vector<char> featureVertices(const CadModel& model, const WeldedMesh& mesh,
+                                  const FeatureOptions& options) {
+  std::vector<char> wanted(model.vertices.size(), 0), result(mesh.vertices.size(), 0), found = wanted;
+  for (const int v : named(options.vertices, "Vertex", model.verticesNamed)) wanted[v] = 1;
+  for (size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (const auto& vertex = mesh.vertices[v].cadVertex; vertex && wanted[*vertex])
+      result[v] = found[*vertex] = 1;
+  for (size_t v = 0; v < wanted.size(); ++v)
+    if (wanted[v] && !found[v])
+      throw inputError("options", "a vertex that is to be a feature point is on no face", {},
+                       model.vertices[v]);
+  return result;
 }
 
 }  // namespace trimquad

@@ -2,6 +2,9 @@
 
 #include <vector>
 
+#include "trimquad/mesh/feature_options.h"
+
+// This order: OpenCASCADE's macros must not reach the mesh headers.
 #include "trimquad/brep/cad_model.h"
 #include "trimquad/brep/welded_mesh.h"
 
@@ -21,17 +24,29 @@ SideUses sideUses(const CadModel& model, const WeldedMesh& mesh);
 std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh);
 
 struct FeatureEdges {
-  /// By CAD edge: whether regions end there. Free edges, and edges where the angle between the true normals
-  /// of their two faces exceeds `angle` on most of their length; without sharp chains that end inside a
-  /// region and separate nothing.
+  /// By CAD edge: whether the surface is opened there. Free edges; sharp ones that separate regions; and
+  /// inner ones.
   std::vector<char> cut;
-  /// By side of the welded mesh: whether the surface turns by more than `angle` within `reach` (model units)
-  /// to both sides of it, on an edge that is not cut. Triangles of about that size must not reach across.
+  /// By CAD edge: whether it is cut only for its vertices to be the same on both sides, and lies aligned
+  /// inside a region in the end.
+  std::vector<char> inner;
+  /// By CAD edge: whether grid lines must run along it. All inner ones are.
+  std::vector<char> aligned;
+  /// By side of the welded mesh: whether the surface turns by more than the feature angle within `reach`
+  /// (model units) to both sides of it, on an edge that is not cut. Triangles of about that size must not
+  /// reach across.
   std::vector<char> crease;
 };
 
-/// \param angle  radians; with an infinite one only free edges count
+/// What the options make of a model's edges. An edge is sharp where the angle between the true normals of its
+/// two faces exceeds the feature angle on most of its length; chains of sharp edges that end inside a region
+/// do not separate anything. Throws Error(Input, "options") for names of edges that are not there.
 FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                          const std::vector<char>& reversed, double angle, double reach);
+                          const std::vector<char>& reversed, const FeatureOptions& options, double reach);
+
+/// By vertex of the welded mesh: whether the options name it. Throws Error(Input, "options") for names of
+/// vertices that are not there.
+std::vector<char> featureVertices(const CadModel& model, const WeldedMesh& mesh,
+                                  const FeatureOptions& options);
 
 }  // namespace trimquad

@@ -7,10 +7,16 @@
 #include <numbers>
 #include <optional>
 
-#include "trimquad/brep/cut_regions.h"
-#include "trimquad/brep/occt_guard.h"
 #include "trimquad/mesh/divide_curves.h"
+#include "trimquad/mesh/feature_points.h"
+#include "trimquad/mesh/join_regions.h"
 #include "trimquad/mesh/remesh.h"
+#include "trimquad/mesh/split_triangles.h"
+
+// This order: OpenCASCADE's macros must not reach the mesh headers.
+#include "trimquad/brep/cut_regions.h"
+#include "trimquad/brep/inner_edges.h"
+#include "trimquad/brep/occt_guard.h"
 
 namespace trimquad {
 namespace {
@@ -29,12 +35,12 @@ CutModel cutIntoRegions(const Shape& shape, double deflection, const TessellateO
   const CadModel cad = cadModel(shape);
   WeldedMesh mesh = weldedMesh(cad, deflection);
   const auto reversed = orientFaces(cad, mesh);
-  const auto uses = sideUses(cad, mesh);
-  const double angle = options.features == TessellateOptions::Features::Trim
-                           ? options.featureAngle * std::numbers::pi / 180
-                           : std::numeric_limits<double>::infinity();
-  const auto features = featureEdges(cad, mesh, uses, reversed, angle, kShortestEdge * options.edgeLength);
-  return cutRegions(cad, mesh, uses, features, reversed);
+  auto uses = sideUses(cad, mesh);
+  auto features =
+      featureEdges(cad, mesh, uses, reversed, options.features, kShortestEdge * options.edgeLength);
+  divideInnerEdges(cad, mesh, features);
+  uses = sideUses(cad, mesh);
+  return cutRegions(cad, mesh, uses, features, featureVertices(cad, mesh, options.features), reversed);
 }
 
 /// BRepMesh cannot triangulate some faces at one deflection that it can at another. Since the true surface is
@@ -48,11 +54,28 @@ CutModel regionsOf(const Shape& shape, double deflection, const TessellateOption
     try {
       return cutIntoRegions(shape, coarser * deflection, options);
     } catch (const Error& error) {
-      if (error.kind() != Error::Kind::Input) throw;
+      if (error.kind() != Error::Kind::Input || error.stage() == "options") throw;
       if (!complaint) complaint = error;
     }
   }
   throw Error(*complaint);
+}
+
+/// Two pieces at least where regions are joined again: a slit of one piece would close by itself.
+void divideSlits(const CutModel& cut, std::vector<std::vector<double>>& division) {
+  for (size_t c = 0; c < division.size(); ++c)
+    if (cut.inner[c] && division[c].size() == 2)
+      division[c].insert(division[c].begin() + 1, 0.5 * (division[c].front() + division[c].back()));
+}
+
+/// Marks the aligned edges of the boundaries, and the vertices that were wanted on curves.
+void markConstraints(CutModel& cut, const std::vector<CurvePoint>& points) {
+  for (auto& region : cut.model.regions) {
+    for (const auto e : region.mesh.edges())
+      if (const auto& curve = region.edgeCurve[e.idx()]; curve && cut.aligned[curve->index])
+        region.aligned.push_back(e);
+    markCurvePoints(region, points);
+  }
 }
 
 }  // namespace
@@ -60,18 +83,24 @@ CutModel regionsOf(const Shape& shape, double deflection, const TessellateOption
 Model tessellate(const Shape& shape, const TessellateOptions& options, const Progress& progress) {
   demandPositive(options.edgeLength, "the edge length");
   demandPositive(options.tolerance, "the tolerance");
-  demandPositive(options.featureAngle, "the feature angle");
+  demandPositive(options.features.angle, "the feature angle");
   const std::string complaint = "OpenCASCADE cannot triangulate the shape; repair it";
   return guarded(Error::Kind::Input, "tessellate", complaint, [&] {
     const double diagonal = shape.diagonal();
     const double deflection = std::clamp(std::min(options.tolerance, 0.1 * options.edgeLength),
                                          kFinestDeflection * diagonal, kCoarsestDeflection * diagonal);
-    auto [model, creases] = regionsOf(shape, deflection, options, progress);
+    CutModel cut = regionsOf(shape, deflection, options, progress);
+    const auto curvePoints = pinPoints(cut.model, options.features);
     const RemeshOptions wanted{options.edgeLength, options.tolerance};
-    const auto division = divideCurves(model, wanted);
-    for (size_t r = 0; r < model.regions.size(); ++r)
-      remesh(model.regions[r], model, division, creases[r], wanted, progress);
-    return std::move(model);
+    auto division = divideCurves(cut.model, wanted);
+    divideAt(curvePoints, division);
+    divideSlits(cut, division);
+    for (size_t r = 0; r < cut.model.regions.size(); ++r)
+      remesh(cut.model.regions[r], cut.model, division, cut.creases[r], wanted, progress);
+    markConstraints(cut, curvePoints);
+    Model model = joinRegions(cut.model, cut.inner, cut.surfaces);
+    for (auto& region : model.regions) splitConstrainedTriangles(region);
+    return model;
   });
 }
 

@@ -1,216 +1,213 @@
 #include "trimquad/field/cross_field.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
 
 #include "trimquad/base/error.h"
 #include "trimquad/base/sparse_solver.h"
-#include "trimquad/field/loop_turning.h"
+#include "trimquad/field/angle_solve.h"
+#include "trimquad/field/dual_weights.h"
+#include "trimquad/field/field_topology.h"
 #include "trimquad/field/transport.h"
-#include "trimquad/mesh/triangle_surface.h"
 
 namespace trimquad {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kQuarter = kPi / 2;
+using Complex = std::complex<double>;
+constexpr double kQuarter = std::numbers::pi / 2;
 
-/// One direction per face that the field should follow up to quarter turns, with a weight in [0, 1].
-struct Guidance {
-  std::vector<double> angle, weight;
-};
-
-/// The quadratic energy of a field given by one angle per face: sum of w (a_g - a_f - angle - jump)^2 over
-/// the interior edges, and its solutions.
-class AngleSolve {
+/// Fields as one complex number per face, exp(4 i angle): the same for all four directions of a cross.
+/// The energy is sum of w |z_g - exp(4 i transport) z_f|^2 over edges, plus that of the guidance; steps of
+/// its gradient flow are implicit, with unit length restored after each. (Merriman-Bence-Osher; Viertel and
+/// Osting 2019)
+class CrossDiffusion {
  public:
-  AngleSolve(const SurfaceMesh& mesh, const Transport& transport) : mesh_(mesh), transport_(transport) {
-    weight_.assign(mesh.n_edges(), 0.0);
-    for (const auto e : mesh.edges()) {
-      if (mesh.is_boundary(e)) continue;
-      // primal over dual length, with the dual length from the areas beside the edge
-      const double length2 = (mesh.point(mesh.to_vertex_handle(mesh.halfedge_handle(e, 0))) -
-                              mesh.point(mesh.to_vertex_handle(mesh.halfedge_handle(e, 1))))
-                                 .squaredNorm();
-      const double area = faceArea(mesh.face_handle(mesh.halfedge_handle(e, 0))) +
-                          faceArea(mesh.face_handle(mesh.halfedge_handle(e, 1)));
-      weight_[e.idx()] = std::min(1.5 * length2 / area, 100.0);
+  CrossDiffusion(const Region& region, const Transport& transport, const FieldGuidance& guidance,
+                 double guidanceReach)
+      : mesh_(region.mesh), transport_(transport), weight_(dualWeights(region.mesh)) {
+    const int faces = int(mesh_.n_faces());
+    const double area = surfaceArea(mesh_);
+    mass_.resize(faces);
+    pull_.assign(faces, 0.0);
+    wish_.assign(faces, Complex(0));
+    for (const auto f : mesh_.faces()) {
+      mass_[f.idx()] = mesh_.calc_face_area(f) / area;
+      if (!(guidance.weight[f.idx()] > 0)) continue;
+      pull_[f.idx()] = guidanceReach * guidanceReach * mass_[f.idx()] * guidance.weight[f.idx()];
+      wish_[f.idx()] = cross(f, guidance.direction[f.idx()]);
     }
+    fix(region.aligned);
+    position_.assign(faces, -1);
+    for (int f = 0; f < faces; ++f)
+      if (!fixed_[f]) position_[f] = free_++;
   }
 
-  double faceArea(FaceHandle f) const {
-    const auto h = mesh_.halfedge_handle(f);
-    const Eigen::Vector3d a = mesh_.point(mesh_.from_vertex_handle(h)),
-                          b = mesh_.point(mesh_.to_vertex_handle(h)),
-                          c = mesh_.point(mesh_.to_vertex_handle(mesh_.next_halfedge_handle(h)));
-    return 0.5 * (b - a).cross(c - a).norm();
+  Complex cross(FaceHandle f, const Eigen::Vector3d& direction) const {
+    return std::polar(1.0, 4 * transport_.angleOf(f, direction));
   }
 
-  /// Factorises the energy plus sum of faceWeight a_f^2 (with face 0 held where there is no weight at all).
-  void factorize(const std::vector<double>& faceWeight) {
+  /// Where a field starts from: the guidance where there is some; else the boundary's directions.
+  std::vector<Complex> start() const {
+    std::vector<Complex> z(mesh_.n_faces());
+    double pulled = 0;
+    for (const auto f : mesh_.faces()) {
+      z[f.idx()] = pull_[f.idx()] * wish_[f.idx()];
+      pulled += pull_[f.idx()];
+    }
+    for (int f = 0; f < int(fixed_.size()); ++f)
+      if (fixed_[f]) z[f] = *fixed_[f], pulled += 1;
+    constexpr double kFaint = 1e-3;
+    if (pulled > kFaint) return z;
+    for (const auto h : mesh_.halfedges())
+      if (mesh_.is_boundary(h)) {
+        const auto f = mesh_.opposite_face_handle(h);
+        z[f.idx()] += mesh_.calc_edge_length(h) * cross(f, mesh_.calc_edge_vector(h));
+        pulled = 1;
+      }
+    if (pulled <= kFaint) std::fill(z.begin(), z.end(), Complex(1));
+    return z;
+  }
+
+  bool isFixed(FaceHandle f) const { return fixed_[f.idx()].has_value(); }
+  Complex wish(FaceHandle f) const { return wish_[f.idx()]; }
+  double pull(FaceHandle f) const { return pull_[f.idx()]; }
+
+  /// For steps of `time` in units of the surface's area.
+  void prepare(double time) {
+    time_ = time;
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(4 * mesh_.n_edges());
-    double sum = 0;
-    for (const double w : faceWeight) sum += w;
-    for (const auto f : mesh_.faces()) entries.emplace_back(f.idx(), f.idx(), faceWeight[f.idx()]);
-    if (sum == 0) entries.emplace_back(0, 0, 1.0);
+    entries.reserve(4 * mesh_.n_edges() + 2 * mesh_.n_faces());
+    const auto add = [&](int f, int g, Complex a) {  // the real form of a Hermitian matrix
+      const int i = position_[f], j = position_[g];
+      if (i < 0 || j < 0) return;
+      entries.emplace_back(2 * i, 2 * j, a.real());
+      entries.emplace_back(2 * i + 1, 2 * j + 1, a.real());
+      if (f == g) return;
+      entries.emplace_back(2 * i, 2 * j + 1, -a.imag());
+      entries.emplace_back(2 * i + 1, 2 * j, a.imag());
+    };
+    for (int f = 0; f < int(mass_.size()); ++f) add(f, f, mass_[f] + time * pull_[f]);
     for (const auto e : mesh_.edges()) {
       if (mesh_.is_boundary(e)) continue;
-      const int f = mesh_.face_handle(mesh_.halfedge_handle(e, 0)).idx(),
-                g = mesh_.face_handle(mesh_.halfedge_handle(e, 1)).idx();
-      const double w = weight_[e.idx()];
-      entries.emplace_back(f, f, w);
-      entries.emplace_back(g, g, w);
-      entries.emplace_back(f, g, -w);
-      entries.emplace_back(g, f, -w);
+      const auto [f, g, rotation] = across(e);
+      const double w = time * weight_[e.idx()];
+      add(f, f, w);
+      add(g, g, w);
+      add(g, f, -w * rotation);
+      add(f, g, -w * std::conj(rotation));
     }
-    Eigen::SparseMatrix<double> matrix(Eigen::Index(mesh_.n_faces()), Eigen::Index(mesh_.n_faces()));
+    Eigen::SparseMatrix<double> matrix(2 * free_, 2 * free_);
     matrix.setFromTriplets(entries.begin(), entries.end());
     solver_.factorize(matrix);
   }
 
-  /// Right-hand side of prescribed differences (by halfedge 0 of each edge: what a_g - a_f should be).
-  Eigen::VectorXd rightHandSide(const std::vector<double>& difference) const {
-    Eigen::VectorXd rhs = Eigen::VectorXd::Zero(Eigen::Index(mesh_.n_faces()));
+  /// One step, not yet of unit length.
+  std::vector<Complex> step(const std::vector<Complex>& z) const {
+    Eigen::VectorXd rhs = Eigen::VectorXd::Zero(2 * free_);
+    const auto add = [&](int f, Complex a) {
+      if (position_[f] < 0) return;
+      rhs[2 * position_[f]] += a.real();
+      rhs[2 * position_[f] + 1] += a.imag();
+    };
+    for (int f = 0; f < int(mass_.size()); ++f) add(f, mass_[f] * z[f] + time_ * pull_[f] * wish_[f]);
     for (const auto e : mesh_.edges()) {
       if (mesh_.is_boundary(e)) continue;
-      const double flow = weight_[e.idx()] * difference[e.idx()];
-      rhs[mesh_.face_handle(mesh_.halfedge_handle(e, 0)).idx()] -= flow;
-      rhs[mesh_.face_handle(mesh_.halfedge_handle(e, 1)).idx()] += flow;
+      const auto [f, g, rotation] = across(e);
+      const double w = time_ * weight_[e.idx()];
+      if (fixed_[f]) add(g, w * rotation * *fixed_[f]);
+      if (fixed_[g]) add(f, w * std::conj(rotation) * *fixed_[g]);
     }
-    return rhs;
-  }
-
-  Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const { return solver_.solve(rhs); }
-
-  /// sqrt(w) (a_g - a_f - difference) per edge.
-  Eigen::VectorXd residual(const Eigen::VectorXd& angle, const std::vector<double>& difference) const {
-    Eigen::VectorXd r = Eigen::VectorXd::Zero(Eigen::Index(mesh_.n_edges()));
-    for (const auto e : mesh_.edges()) {
-      if (mesh_.is_boundary(e)) continue;
-      const int f = mesh_.face_handle(mesh_.halfedge_handle(e, 0)).idx(),
-                g = mesh_.face_handle(mesh_.halfedge_handle(e, 1)).idx();
-      r[e.idx()] = std::sqrt(weight_[e.idx()]) * (angle[g] - angle[f] - difference[e.idx()]);
-    }
-    return r;
-  }
-
-  std::vector<double> transported() const {
-    std::vector<double> difference(mesh_.n_edges(), 0.0);
-    for (const auto e : mesh_.edges())
-      difference[e.idx()] = transport_.angle[mesh_.halfedge_handle(e, 0).idx()];
-    return difference;
+    const Eigen::VectorXd x = solver_.solve(rhs);
+    std::vector<Complex> next(z.size());
+    for (int f = 0; f < int(next.size()); ++f)
+      next[f] = fixed_[f] ? *fixed_[f] : Complex(x[2 * position_[f]], x[2 * position_[f] + 1]);
+    return next;
   }
 
  private:
+  struct Crossing {
+    int f, g;
+    Complex rotation;  ///< from f's frame to g's
+  };
+  Crossing across(EdgeHandle e) const {
+    const auto h = mesh_.halfedge_handle(e, 0);
+    return {mesh_.face_handle(h).idx(), mesh_.opposite_face_handle(h).idx(),
+            std::polar(1.0, 4 * transport_.angle[h.idx()])};
+  }
+
+  void fix(const std::vector<EdgeHandle>& aligned) {
+    fixed_.resize(mesh_.n_faces());
+    for (const auto e : aligned)
+      for (int side = 0; side < 2; ++side) {
+        const auto h = mesh_.halfedge_handle(e, side);
+        if (mesh_.is_boundary(h)) continue;
+        const auto f = mesh_.face_handle(h);
+        if (fixed_[f.idx()])
+          throw stageError("field", "a triangle has two aligned edges; it must be split between them",
+                           "triangle " + std::to_string(f.idx()), mesh_.calc_face_centroid(f));
+        fixed_[f.idx()] = cross(f, mesh_.calc_edge_vector(h));
+      }
+  }
+
   const SurfaceMesh& mesh_;
   const Transport& transport_;
-  std::vector<double> weight_;
+  std::vector<double> weight_, mass_, pull_;
+  std::vector<Complex> wish_;
+  std::vector<std::optional<Complex>> fixed_;
+  std::vector<int> position_;  ///< by face: among the unknowns, -1 where the field is fixed
+  int free_ = 0;
+  double time_ = 0;
   SparseSolver solver_{"field"};
 };
 
-/// Per edge (halfedge 0) how many full turns the field makes against parallel transport.
-std::vector<int> jumps(const SurfaceMesh& mesh, const LoopTurning& turning,
-                       const std::vector<int>& generator) {
-  std::vector<int> jump(mesh.n_edges(), 0);
-  for (size_t g = 0; g < generator.size(); ++g)
-    for (const auto h : turning.paths[g])
-      jump[mesh.edge_handle(h).idx()] +=
-          (h == mesh.halfedge_handle(mesh.edge_handle(h), 0) ? 1 : -1) * generator[g];
-  return jump;
-}
-
-/// The turns of the loops for which the smoothest field is smoothest of all: -1 for every loop but two ends
-/// of a tube (0 each), or but one outer loop (+1). Others need seams with rotations or dislocations.
-std::vector<int> smoothestTurning(const SurfaceMesh& mesh, const AngleSolve& solve,
-                                  const LoopTurning& turning) {
-  const int loops = int(turning.loops.size());
-  if (loops == 1) return {1};
-  // The energy is quadratic in the generators' turns: one solution for each, and their Gram matrix.
-  std::vector<Eigen::VectorXd> residuals;
-  const auto base = solve.transported();
-  residuals.push_back(solve.residual(solve.solve(solve.rightHandSide(base)), base));
-  for (int g = 0; g + 1 < loops; ++g) {
-    std::vector<int> unit(loops - 1, 0);
-    unit[g] = 1;
-    const auto jump = jumps(mesh, turning, unit);
-    std::vector<double> difference(jump.size());
-    for (size_t e = 0; e < jump.size(); ++e) difference[e] = 2 * kPi * jump[e];
-    residuals.push_back(solve.residual(solve.solve(solve.rightHandSide(difference)), difference));
-  }
-  Eigen::MatrixXd gram(loops, loops);
-  for (int i = 0; i < loops; ++i)
-    for (int j = 0; j < loops; ++j) gram(i, j) = residuals[i].dot(residuals[j]);
-
-  std::vector<int> best;
-  double least = INFINITY;
-  for (int a = 0; a < loops; ++a)
-    for (int b = a; b < loops; ++b) {
-      std::vector<int> wanted(loops, -1);
-      ++wanted[a];
-      ++wanted[b];
-      const auto generator = generatorTurns(turning, wanted);
-      Eigen::VectorXd x(loops);
-      x[0] = 1;
-      for (int g = 0; g + 1 < loops; ++g) x[g + 1] = generator[g];
-      const double energy = x.dot(gram * x);
-      if (energy < least * (1 - 1e-9)) least = energy, best = wanted;
-    }
-  return best;
-}
-
-Guidance curvatureGuidance(const Region& region, const Transport& transport, const Progress& progress) {
+/// Turns the directions so that the field is smoothest while its matchings, and so its singularities, stay:
+/// least squares of the turns across the edges and of the turns away from the guidance, in real angles. It
+/// spreads the turn around a singularity evenly.
+void relaxAngles(const Region& region, const Transport& transport, const CrossDiffusion& diffusion,
+                 CrossField& field) {
   const auto& mesh = region.mesh;
-  Guidance guidance;
-  guidance.angle.resize(mesh.n_faces());
-  guidance.weight.resize(mesh.n_faces());
-  const std::shared_ptr<const TrueSurface> surface =
-      region.surface ? region.surface : std::make_shared<TriangleSurface>(mesh);
-  const double size = std::sqrt(surfaceArea(mesh));
+  constexpr double kFixed = 1e8;  // beside weights of order 1
+  auto difference = transported(mesh, transport);
+  for (const auto e : mesh.edges())
+    difference[e.idx()] += kQuarter * field.matching[mesh.halfedge_handle(e, 0).idx()];
+  std::vector<double> weight(mesh.n_faces(), 0.0);
+  for (const auto f : mesh.faces()) weight[f.idx()] = diffusion.isFixed(f) ? kFixed : diffusion.pull(f);
+  AngleSolve solve(mesh);
+  solve.factorize(weight);
+  Eigen::VectorXd rhs = solve.rightHandSide(difference);
   for (const auto f : mesh.faces()) {
-    if (f.idx() % 1024 == 0) progress.check();
-    const Eigen::Vector3d centroid = mesh.calc_face_centroid(f);
-    const auto curvature = surface->curvature(centroid);
-    guidance.angle[f.idx()] = transport.angleOf(f, curvature.direction1);
-    // How distinct the directions are: the angle by which the surface bends more in one than in the other
-    // over the region's size, against one radian.
-    const double bend = std::abs(curvature.k1 - curvature.k2) * size;
-    guidance.weight[f.idx()] = std::isfinite(bend) ? bend * bend / (1 + bend * bend) : 0.0;
+    const double angle = transport.angleOf(f, field.direction[f.idx()]);
+    const double off = diffusion.isFixed(f) ? 0.0 : std::arg(diffusion.wish(f)) / 4 - angle;
+    rhs[f.idx()] += weight[f.idx()] * (angle + off - kQuarter * std::round(off / kQuarter));
   }
-  return guidance;
+  const Eigen::VectorXd angle = solve.solve(rhs);
+  for (const auto f : mesh.faces())
+    if (!diffusion.isFixed(f)) field.direction[f.idx()] = transport.direction(f, angle[f.idx()]);
 }
 
-/// The rotation, up to quarter turns, that brings `angle` closest to the guidance; and how sure it is, in [0,
-/// 1].
-std::pair<double, double> bestRotation(const SurfaceMesh& mesh, const AngleSolve& solve,
-                                       const Guidance& guidance, const Eigen::VectorXd& angle) {
-  std::complex<double> sum = 0;
-  double total = 0;
-  for (const auto f : mesh.faces()) {
-    const double area = solve.faceArea(f);
-    sum += area * guidance.weight[f.idx()] * std::polar(1.0, 4 * (guidance.angle[f.idx()] - angle[f.idx()]));
-    total += area;
+/// Restores unit length; where a number has vanished it stays as it was before.
+void normalize(std::vector<Complex>& z, const std::vector<Complex>& before) {
+  for (size_t f = 0; f < z.size(); ++f) {
+    const double length = std::abs(z[f]);
+    if (length > 0)
+      z[f] /= length;
+    else
+      z[f] = std::abs(before[f]) > 0 ? before[f] / std::abs(before[f]) : Complex(1);
   }
-  return {std::arg(sum) / 4, std::abs(sum) / total};
 }
 
-/// The same from the directions of the boundary edges, for surfaces that bend nowhere.
-double rotationAlongBoundary(const SurfaceMesh& mesh, const Transport& transport,
-                             const Eigen::VectorXd& angle) {
-  std::complex<double> sum = 0;
-  for (const auto h : mesh.halfedges()) {
-    if (!mesh.is_boundary(h)) continue;
-    const auto f = mesh.opposite_face_handle(h);
-    const Eigen::Vector3d d = mesh.point(mesh.to_vertex_handle(h)) - mesh.point(mesh.from_vertex_handle(h));
-    sum += d.norm() * std::polar(1.0, 4 * (transport.angleOf(f, d) - angle[f.idx()]));
-  }
-  return std::arg(sum) / 4;
+/// Root mean square of the change per face.
+double change(const std::vector<Complex>& z, const std::vector<Complex>& before) {
+  double sum = 0;
+  for (size_t f = 0; f < z.size(); ++f) sum += std::norm(z[f] - before[f]);
+  return std::sqrt(sum / double(z.size()));
 }
 
-/// Directions in a triangle need one.
+}  // namespace
+
 void requireArea(const SurfaceMesh& mesh) {
   for (const auto f : mesh.faces()) {
     double longest = 0;
@@ -225,76 +222,35 @@ void requireArea(const SurfaceMesh& mesh) {
   }
 }
 
-void requireSingularityFree(const SurfaceMesh& mesh) {
-  const auto loops = boundaryLoops(mesh);
-  const int genus2 = 2 - eulerCharacteristic(mesh) - int(loops.size());
-  if (loops.empty())
-    throw stageError(
-        "field",
-        "the region is a closed surface, which needs irregular vertices; this version maps only regions "
-        "with a boundary: cut it, or open it along an edge");
-  if (genus2 != 0)
-    throw stageError(
-        "field",
-        "the region has handles (genus " + std::to_string(genus2 / 2) +
-            "), which need irregular vertices; this version maps only regions of genus 0: cut the handles");
-}
-
-}  // namespace
-
-CrossField crossField(const Region& region, const Progress& progress) {
+CrossField crossField(const Region& region, const FieldGuidance& guidance, double guidanceReach,
+                      const Progress& progress) {
   const auto& mesh = region.mesh;
-  requireSingularityFree(mesh);
   requireArea(mesh);
-  const Transport frames = transport(mesh);
-  const LoopTurning turning = loopTurning(mesh, frames);
-  progress.report(0.2);
-
-  AngleSolve solve(mesh, frames);
-  solve.factorize(std::vector<double>(mesh.n_faces(), 0.0));
-  const auto wanted = smoothestTurning(mesh, solve, turning);
-  const auto jump = jumps(mesh, turning, generatorTurns(turning, wanted));
-  auto difference = solve.transported();
-  for (size_t e = 0; e < jump.size(); ++e) difference[e] += 2 * kPi * jump[e];
-  const Eigen::VectorXd smooth = solve.rightHandSide(difference);
-  Eigen::VectorXd angle = solve.solve(smooth);
-  progress.report(0.5);
-
-  // Curvature settles the rotation that the smoothest field leaves open, then bends the field within its
-  // homotopy class: the branch of the guidance nearest to the field is chosen anew a few times.
-  const Guidance guidance = curvatureGuidance(region, frames, progress);
-  progress.report(0.7);
-  const auto [rotation, certainty] = bestRotation(mesh, solve, guidance, angle);
-  angle.array() += certainty > 1e-3 ? rotation : rotationAlongBoundary(mesh, frames, angle);
-  constexpr double kGuidanceReach =
-      4;  // the guidance takes over at lengths above 1 / (this) of the region's size
-  std::vector<double> weight(mesh.n_faces());
-  const double area = surfaceArea(mesh);
-  double totalWeight = 0;
-  for (const auto f : mesh.faces()) {
-    weight[f.idx()] = kGuidanceReach * kGuidanceReach * solve.faceArea(f) / area * guidance.weight[f.idx()];
-    totalWeight += weight[f.idx()];
-  }
-  if (certainty > 1e-3 && totalWeight > 0) {
-    solve.factorize(weight);
-    constexpr int kRounds = 6;
-    for (int round = 0; round < kRounds; ++round) {
-      Eigen::VectorXd rhs = smooth;
-      for (const auto f : mesh.faces()) {
-        const double off = guidance.angle[f.idx()] - angle[f.idx()];
-        rhs[f.idx()] += weight[f.idx()] * (angle[f.idx()] + off - kQuarter * std::round(off / kQuarter));
-      }
-      angle = solve.solve(rhs);
-      progress.report(0.7 + 0.3 * (round + 1) / kRounds);
+  const Transport transport = principalTransport(mesh);
+  CrossDiffusion diffusion(region, transport, guidance, guidanceReach);
+  std::vector<Complex> z = diffusion.start();
+  // Long steps first, which leave only the singularities that the whole surface asks for; shorter ones then
+  // bring them to their places.
+  constexpr double kTimes[] = {0.1, 0.01, 0.001};
+  constexpr int kSteps = 8;
+  constexpr double kSettled = 0.02;
+  for (const double time : kTimes) {
+    diffusion.prepare(time);
+    for (int step = 0; step < kSteps; ++step) {
+      progress.check();
+      auto next = diffusion.step(z);
+      normalize(next, z);
+      const double moved = change(next, z);
+      z = std::move(next);
+      if (moved < kSettled) break;
     }
   }
-
   CrossField field;
   field.direction.resize(mesh.n_faces());
-  for (const auto f : mesh.faces()) field.direction[f.idx()] = frames.direction(f, angle[f.idx()]);
-  field.matching.assign(mesh.n_halfedges(), 0);  // all jumps are full turns
-  field.index.assign(mesh.n_vertices(), 0);
-  field.loopTurns = wanted;
+  for (const auto f : mesh.faces())
+    field.direction[f.idx()] = transport.direction(f, std::arg(z[f.idx()]) / 4);
+  settleTopology(mesh, transport, field);
+  relaxAngles(region, transport, diffusion, field);
   return field;
 }
 

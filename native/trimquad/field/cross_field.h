@@ -11,13 +11,13 @@ namespace trimquad {
 struct CrossField {
   std::vector<Eigen::Vector3d>
       direction;  ///< by face index: one of the four, unit length, in the triangle's plane
-  /// By halfedge index: quarter turns that take the face's direction to the opposite face's nearest one: the
-  /// field turns by matching * 90 degrees from direction[f] to direction[g] when crossing h from f to g.
-  /// Interior edges only.
+  /// By halfedge index: by how many quarter turns direction[] jumps from the face to the opposite one beside
+  /// the field's own smooth turn, which is at most 45 degrees. Antisymmetric. 0 on the boundary.
   std::vector<int> matching;
-  std::vector<int> index;  ///< by vertex index: singularity index in quarter turns
-  /// Per boundary loop (in the order of boundaryLoops) how many full turns it makes against the field: 1 for
-  /// an outer loop, -1 for a hole, 0 for an end of a tube.
+  std::vector<int> index;  ///< by vertex index: singularity index in quarter turns; 0 on the boundary
+  /// Per boundary loop (in the order of boundaryLoops) how many quarter turns it makes against the field: 4
+  /// for an outer loop of a plane region, -4 for a hole in it, 0 for an end of a tube.
+  /// The turns of all loops and all indices add up to four times the Euler characteristic.
   std::vector<int> loopTurns;
 };
 
@@ -27,8 +27,15 @@ struct FieldGuidance {
   std::vector<double> weight;              ///< by face index, in [0, 1]; 0 where there is no wish
 };
 
-/// The smoothest field without singularities, following principal curvature where it is distinct.
-/// Only for regions of genus 0 with a boundary; throws Error(Stage) for others, which need singularities.
-CrossField crossField(const Region& region, const Progress& progress);
+/// A smooth field with as few singularities as smoothness asks for: parallel to the region's aligned edges in
+/// the triangles beside them, free on the rest of the boundary, bent towards the guidance.
+/// \param guidanceReach  the guidance takes over from smoothness at lengths above 1 / (this) of the square
+/// root of the region's area; 0 ignores it
+/// Throws Error(Stage, "field") for a triangle without area or with two aligned edges.
+CrossField crossField(const Region& region, const FieldGuidance& guidance, double guidanceReach,
+                      const Progress& progress);
+
+/// Throws Error(Stage, "field") naming the first triangle that has no area, and so no directions.
+void requireArea(const SurfaceMesh& mesh);
 
 }  // namespace trimquad

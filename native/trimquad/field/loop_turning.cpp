@@ -11,21 +11,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// The interior halfedges that a walk along the loop crosses, close to it, with the surface on its left.
-template <typename Visit>
-void walkBeside(const SurfaceMesh& mesh, const std::vector<HalfedgeHandle>& loop, const Visit& visit) {
-  // A boundary halfedge has the surface on its right, so the walk runs against the loop's order.
-  for (size_t i = loop.size(); i-- > 0;) {
-    const HalfedgeHandle inner = mesh.opposite_halfedge_handle(loop[i]);  // surface on its left
-    // Around the vertex that `inner` enters, clockwise from inner's face to the next boundary edge.
-    HalfedgeHandle h = mesh.next_halfedge_handle(inner);
-    while (!mesh.is_boundary(mesh.opposite_halfedge_handle(h))) {
-      visit(h);
-      h = mesh.next_halfedge_handle(mesh.opposite_halfedge_handle(h));
-    }
-  }
-}
-
 /// Shortest paths from the vertices of loop 0 to the other loops, as a tree of loops joined one after the
 /// other.
 std::vector<std::vector<HalfedgeHandle>> joiningPaths(const SurfaceMesh& mesh,
@@ -76,19 +61,22 @@ std::vector<std::vector<HalfedgeHandle>> joiningPaths(const SurfaceMesh& mesh,
 
 }  // namespace
 
+double tangentTurn(const SurfaceMesh& mesh, const std::vector<HalfedgeHandle>& loop) {
+  double turn = 0;
+  for (const auto h : loop) {
+    turn += kPi;
+    for (const auto out : mesh.voh_range(mesh.from_vertex_handle(h)))
+      if (!mesh.is_boundary(out)) turn -= cornerAngle(mesh, out);
+  }
+  return turn;
+}
+
 LoopTurning loopTurning(const SurfaceMesh& mesh, const Transport& transport) {
   LoopTurning result;
   result.loops = boundaryLoops(mesh);
   int total = 0;
   for (const auto& loop : result.loops) {
-    double turn = 0;  // of the tangent against the frames: exterior angles, then frames
-    for (const auto h : loop) {
-      double interior = 0;
-      const auto v = mesh.from_vertex_handle(h);
-      for (const auto out : mesh.voh_range(v))
-        if (!mesh.is_boundary(out)) interior += cornerAngle(mesh, out);
-      turn += kPi - interior;
-    }
+    double turn = tangentTurn(mesh, loop);  // against the frames: exterior angles, then frames
     walkBeside(mesh, loop, [&](HalfedgeHandle h) { turn += transport.angle[h.idx()]; });
     const double turns = turn / (2 * kPi);
     TRIMQUAD_ASSERT(std::abs(turns - std::round(turns)) < 0.1);

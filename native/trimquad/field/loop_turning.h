@@ -7,6 +7,24 @@
 
 namespace trimquad {
 
+/// Sum of the exterior angles along a boundary loop.
+double tangentTurn(const SurfaceMesh& mesh, const std::vector<HalfedgeHandle>& loop);
+
+/// The interior halfedges that a walk along the loop crosses, close to it, with the surface on its left.
+template <typename Visit>
+void walkBeside(const SurfaceMesh& mesh, const std::vector<HalfedgeHandle>& loop, const Visit& visit) {
+  // A boundary halfedge has the surface on its right, so the walk runs against the loop's order.
+  for (size_t i = loop.size(); i-- > 0;) {
+    const HalfedgeHandle inner = mesh.opposite_halfedge_handle(loop[i]);  // surface on its left
+    // Around the vertex that `inner` enters, clockwise from inner's face to the next boundary edge.
+    HalfedgeHandle h = mesh.next_halfedge_handle(inner);
+    while (!mesh.is_boundary(mesh.opposite_halfedge_handle(h))) {
+      visit(h);
+      h = mesh.next_halfedge_handle(mesh.opposite_halfedge_handle(h));
+    }
+  }
+}
+
 /// The boundary loops of a genus-0 region and how fields without singularities can differ around them.
 ///
 /// A singularity-free field is settled up to deformation by how often each loop turns against it: full turns,

@@ -11,14 +11,13 @@ namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
-/// 2 pi minus the corner angles around an interior vertex.
+}  // namespace
+
 double gaussCurvature(const SurfaceMesh& mesh, VertexHandle v) {
   double sum = kFullTurn;
   for (const auto h : mesh.voh_range(v)) sum -= cornerAngle(mesh, h);
   return sum;
 }
-
-}  // namespace
 
 double Transport::angleOf(FaceHandle f, const Eigen::Vector3d& d) const {
   return std::atan2(d.dot(axisV[f.idx()]), d.dot(axisU[f.idx()]));
@@ -28,7 +27,7 @@ Eigen::Vector3d Transport::direction(FaceHandle f, double a) const {
   return std::cos(a) * axisU[f.idx()] + std::sin(a) * axisV[f.idx()];
 }
 
-Transport transport(const SurfaceMesh& mesh) {
+Transport principalTransport(const SurfaceMesh& mesh) {
   Transport result;
   result.axisU.resize(mesh.n_faces());
   result.axisV.resize(mesh.n_faces());
@@ -50,6 +49,11 @@ Transport transport(const SurfaceMesh& mesh) {
     result.angle[h.idx()] = std::remainder(a, kFullTurn);
     result.angle[o.idx()] = -result.angle[h.idx()];
   }
+  return result;
+}
+
+Transport liftedTransport(const SurfaceMesh& mesh) {
+  Transport result = principalTransport(mesh);
 
   // Spanning tree of triangles: its angles keep their principal value.
   std::vector<char> reached(mesh.n_faces(), 0), inTree(mesh.n_edges(), 0);
@@ -87,8 +91,8 @@ Transport transport(const SurfaceMesh& mesh) {
     for (const auto w : {mesh.from_vertex_handle(h), mesh.to_vertex_handle(h)})
       if (--unsettled[w.idx()] == 1 && !mesh.is_boundary(w)) leaves.push(w);
   };
-  // A chain of edges between two boundary loops has no leaf: the turn of the field around the loops is open there,
-  // so any one of its edges may keep its principal value.
+  // A chain of edges between two boundary loops has no leaf: the turn of the field around the loops is open
+  // there, so any one of its edges may keep its principal value.
   auto open = mesh.edges_begin();
   for (;;) {
     if (leaves.empty()) {
@@ -104,7 +108,8 @@ Transport transport(const SurfaceMesh& mesh) {
     double sum = 0;
     HalfedgeHandle last;
     for (const auto out : mesh.voh_range(v)) {
-      const auto in = mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
+      const auto in =
+          mesh.prev_halfedge_handle(out);  // the face left of `out` ends counter-clockwise at `in`
       sum += result.angle[in.idx()];
       if (!settled[mesh.edge_handle(in).idx()]) last = in;
     }

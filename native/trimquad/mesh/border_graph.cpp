@@ -17,13 +17,6 @@ double angleBetween(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-Vector3d faceNormal(const SurfaceMesh& mesh, FaceHandle f) {
-  const auto h = mesh.halfedge_handle(f);
-  const Vector3d a = mesh.point(mesh.from_vertex_handle(h)), b = mesh.point(mesh.to_vertex_handle(h)),
-                 c = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(h)));
-  return (b - a).cross(c - a);
-}
-
 /// The smallest turn at place i of a chain of points, over one to four edges; closed chains go on at the
 /// other end and are measured over less than half of them.
 double turn(const std::vector<Vector3d>& points, int i, bool closed) {
@@ -96,32 +89,39 @@ std::vector<BorderChain> chainsBetween(const SurfaceMesh& mesh, const std::vecto
 
 }  // namespace
 
-std::vector<int> partsBetweenSharpEdges(const SurfaceMesh& mesh, double angle) {
+std::vector<int> partsBetween(const SurfaceMesh& mesh, const std::vector<bool>& wall) {
   std::vector<int> part(mesh.n_faces(), -1);
   for (const auto seed : mesh.faces()) {
     if (part[seed.idx()] >= 0) continue;
     std::vector<FaceHandle> queue{seed};
     part[seed.idx()] = seed.idx();
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      const Vector3d normal = faceNormal(mesh, queue[i]);
-      for (const auto g : mesh.ff_range(queue[i])) {
-        if (part[g.idx()] >= 0 || angleBetween(normal, faceNormal(mesh, g)) > angle) continue;
+    for (std::size_t i = 0; i < queue.size(); ++i)
+      for (const auto h : mesh.fh_range(queue[i])) {
+        const FaceHandle g = mesh.opposite_face_handle(h);
+        if (!g.is_valid() || part[g.idx()] >= 0 || wall[mesh.edge_handle(h).idx()]) continue;
         part[g.idx()] = seed.idx();
         queue.push_back(g);
       }
-    }
   }
   return part;
 }
 
-BorderGraph::BorderGraph(const SurfaceMesh& mesh, const std::vector<int>& label, double cornerAngle)
-    : border_(mesh.n_edges(), false), corner_(mesh.n_vertices(), false) {
-  std::vector<int> degree(mesh.n_vertices(), 0);
+std::vector<bool> bordersBetween(const SurfaceMesh& mesh, const std::vector<int>& label) {
+  std::vector<bool> border(mesh.n_edges());
   for (const auto e : mesh.edges()) {
     const auto h = mesh.halfedge_handle(e, 0);
-    border_[e.idx()] =
+    border[e.idx()] =
         mesh.is_boundary(e) || label[mesh.face_handle(h).idx()] != label[mesh.opposite_face_handle(h).idx()];
+  }
+  return border;
+}
+
+BorderGraph::BorderGraph(const SurfaceMesh& mesh, std::vector<bool> border, double cornerAngle)
+    : border_(std::move(border)), corner_(mesh.n_vertices(), false) {
+  std::vector<int> degree(mesh.n_vertices(), 0);
+  for (const auto e : mesh.edges()) {
     if (!border_[e.idx()]) continue;
+    const auto h = mesh.halfedge_handle(e, 0);
     ++degree[mesh.from_vertex_handle(h).idx()];
     ++degree[mesh.to_vertex_handle(h).idx()];
   }

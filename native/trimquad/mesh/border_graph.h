@@ -12,15 +12,14 @@ struct BorderChain {
   std::vector<HalfedgeHandle> halfedges;
 };
 
-/// Where regions end: boundary edges and the edges between triangles of different labels, cut into chains at
-/// the corners. A corner is a vertex in which not exactly two border edges meet, or in which the border turns
-/// by more than `cornerAngle` (radians) measured over one to four edges on both sides; a closed chain without
-/// any gets one at its smallest vertex. Each border edge is in one chain; chains are in the order of their
-/// smallest first halfedge.
+/// Chosen edges of a mesh (where regions end, or features) cut into chains at the corners. A corner is a
+/// vertex in which not exactly two of them meet, or in which they turn by more than `cornerAngle` (radians)
+/// measured over one to four edges on both sides; a closed chain without any gets one at its smallest vertex.
+/// Each chosen edge is in one chain; chains are in the order of their smallest first halfedge.
 class BorderGraph {
  public:
-  /// `label` is by triangle.
-  BorderGraph(const SurfaceMesh& mesh, const std::vector<int>& label, double cornerAngle);
+  /// \param border  by edge
+  BorderGraph(const SurfaceMesh& mesh, std::vector<bool> border, double cornerAngle);
 
   const std::vector<BorderChain>& chains() const { return chains_; }
   bool isBorder(EdgeHandle e) const { return border_[e.idx()]; }
@@ -31,8 +30,11 @@ class BorderGraph {
   std::vector<BorderChain> chains_;
 };
 
-/// By triangle: the smallest triangle that it reaches without crossing an edge where the normals turn by more
-/// than `angle` (radians). Sharp edges that enclose nothing separate nothing.
-std::vector<int> partsBetweenSharpEdges(const SurfaceMesh& mesh, double angle);
+/// By edge: whether it is on the boundary or between triangles of different labels (by triangle).
+std::vector<bool> bordersBetween(const SurfaceMesh& mesh, const std::vector<int>& label);
+
+/// By triangle: the smallest triangle that it reaches without crossing a wall (by edge). Walls that enclose
+/// nothing separate nothing.
+std::vector<int> partsBetween(const SurfaceMesh& mesh, const std::vector<bool>& wall);
 
 }  // namespace trimquad

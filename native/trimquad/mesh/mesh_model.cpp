@@ -8,36 +8,95 @@
 #include <string>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/aabb_tree.h"
 #include "trimquad/mesh/border_graph.h"
+#include "trimquad/mesh/edge_choice.h"
 #include "trimquad/mesh/polyline_curve.h"
+#include "trimquad/mesh/sharp_edges.h"
 #include "trimquad/mesh/side_gluing.h"
+#include "trimquad/mesh/split_triangles.h"
 
 namespace trimquad {
 namespace {
+
+/// The shortest sharp curves that count, in quad edges.
+constexpr double kShortestBorder = 0.5, kShortestAligned = 2;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
+/// The vertices at the wanted points of the surface, put in where there are none.
+std::vector<VertexHandle> insertPoints(SurfaceMesh& mesh, const FeatureOptions& options,
+                                       std::vector<int>& input) {
+  std::vector<VertexHandle> inserted;
+  for (const Eigen::Vector3d& p : options.points) {
+    std::optional<FaceHandle> nearest;
+    Eigen::Vector3d barycentric;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto f : mesh.faces()) {
+      const auto h = mesh.halfedge_handle(f);
+      const Eigen::Vector3d &a = mesh.point(mesh.from_vertex_handle(h)),
+                            &b = mesh.point(mesh.to_vertex_handle(h)),
+                            &c = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(h)));
+      const Eigen::Vector3d w = closestOnTriangle(p, a, b, c);
+      const double square = (w[0] * a + w[1] * b + w[2] * c - p).squaredNorm();
+      if (square < least) nearest = f, barycentric = w, least = square;
+    }
+    if (!nearest || !(std::sqrt(least) <= kFeaturePointReach * options.quadLength))
+      throw inputError("options",
+                       "a feature point is " + std::to_string(std::sqrt(least)) +
+                           " away from the surface, over half a quad; give a point on it",
+                       {}, p);
+    inserted.push_back(insertPoint(mesh, *nearest, barycentric, input));
+  }
+  return inserted;
+}
+
 /// Cuts one mesh into the regions of a model.
 class ModelCut {
  public:
-  ModelCut(const SurfaceMesh& mesh, const MeshModelOptions& options, const Progress& progress)
+  /// \param input  by triangle
+  ModelCut(const SurfaceMesh& mesh, const MeshModelOptions& options, const std::vector<int>& input,
+           const std::vector<VertexHandle>& featurePoints, const Progress& progress)
       : mesh_(mesh),
+        options_(options.features),
+        input_(input),
         progress_(progress),
-        component_(partsBetweenSharpEdges(mesh, std::numeric_limits<double>::infinity())),
-        part_(options.trimAngle ? partsBetweenSharpEdges(mesh, radians(*options.trimAngle)) : component_),
-        border_(mesh, part_, radians(options.cornerAngle)) {}
+        component_(partsBetween(mesh, std::vector<bool>(mesh.n_edges(), false))),
+        part_(options_.sharp == FeatureOptions::Sharp::Trim ? partsBetween(mesh, sharp(kShortestBorder))
+                                                            : component_),
+        border_(mesh, bordersBetween(mesh, part_), radians(options.cornerAngle)),
+        point_(mesh.n_vertices(), false) {
+    for (const auto v : featurePoints) point_[v.idx()] = true;
+  }
 
   Model run() {
     addCorners();
     addCurves();
+    chooseAligned();
     addRegions();
     measure();
     return std::move(model_);
   }
 
  private:
+  std::vector<bool> sharp(double shortest) const {
+    return sharpEdges(
+        mesh_, {.angle = radians(options_.angle), .quadLength = options_.quadLength, .shortest = shortest});
+  }
+
+  void chooseAligned() {
+    aligned_ = options_.sharp == FeatureOptions::Sharp::Align ? sharp(kShortestAligned)
+                                                              : std::vector<bool>(mesh_.n_edges(), false);
+    const auto chosen = chosenEdges(mesh_, model_.curves, curve_, options_.align);
+    const auto freed = chosenEdges(mesh_, model_.curves, curve_, options_.free);
+    for (const auto e : mesh_.edges()) {
+      const bool byDefault = aligned_[e.idx()] || (options_.alignBoundary && border_.isBorder(e));
+      aligned_[e.idx()] = (byDefault || chosen[e.idx()]) && !freed[e.idx()];
+    }
+  }
+
   void addCorners() {
     corner_.resize(mesh_.n_vertices());
     for (const auto v : mesh_.vertices()) {
@@ -122,14 +181,19 @@ class ModelCut {
       result.curveParameter.push_back(parameter_[v]);
       result.corner.push_back(corner_[v]);
     }
+    for (const auto f : faces) result.inputTriangle.push_back(input_[f.idx()]);
     result.edgeCurve.resize(result.mesh.n_edges());
-    for (const auto h : result.mesh.halfedges()) {
-      if (!result.mesh.is_boundary(h)) continue;
+    for (const auto e : result.mesh.edges()) {
+      const auto h = result.mesh.halfedge_handle(e, 0);
       const VertexHandle a(whole[result.mesh.from_vertex_handle(h).idx()]);
       const VertexHandle b(whole[result.mesh.to_vertex_handle(h).idx()]);
-      result.edgeCurve[result.mesh.edge_handle(h).idx()] =
-          curve_[mesh_.edge_handle(mesh_.find_halfedge(a, b)).idx()];
+      const EdgeHandle original = mesh_.edge_handle(mesh_.find_halfedge(a, b));
+      if (result.mesh.is_boundary(e)) result.edgeCurve[e.idx()] = curve_[original.idx()];
+      if (aligned_[original.idx()]) result.aligned.push_back(e);
     }
+    for (const auto v : result.mesh.vertices())
+      if (point_[whole[v.idx()]]) result.featurePoints.push_back(v);
+    splitConstrainedTriangles(result);
     return result;
   }
 
@@ -164,10 +228,14 @@ class ModelCut {
   }
 
   const SurfaceMesh& mesh_;
+  const FeatureOptions& options_;
+  const std::vector<int>& input_;  ///< by triangle
   const Progress& progress_;
   const std::vector<int> component_,
       part_;  ///< by triangle: the smallest one of its component, of its region
   const BorderGraph border_;
+  std::vector<bool> point_;                      ///< by vertex: whether it is a feature point
+  std::vector<bool> aligned_;                    ///< by edge
   std::vector<std::optional<CornerId>> corner_;  ///< by vertex
   std::vector<std::optional<CurveId>> curve_;    ///< by edge
   std::vector<double> parameter_;                ///< by vertex
@@ -176,11 +244,21 @@ class ModelCut {
 
 }  // namespace
 
-Model meshModel(const TriangleSoup& soup, const MeshModelOptions& options, const Progress& progress) {
-  const SurfaceMesh mesh = buildSurfaceMesh(soup);
+Model meshModel(const TriangleSoup& soup, const MeshModelOptions& options, const Progress& progress,
+                std::vector<int> input) {
+  SurfaceMesh mesh = buildSurfaceMesh(soup);
   if (mesh.n_faces() == 0) throw inputError("tessellate", "the mesh has no triangles");
   progress.check();
-  return ModelCut(mesh, options, progress).run();
+  if (!options.features.vertices.empty())
+    throw inputError("options", "a mesh has no vertices with names; give feature points as x,y,z",
+                     options.features.vertices.front());
+  if (input.empty()) {
+    input.resize(mesh.n_faces());
+    std::iota(input.begin(), input.end(), 0);
+  }
+  TRIMQUAD_ASSERT(input.size() == mesh.n_faces());
+  const auto points = insertPoints(mesh, options.features, input);
+  return ModelCut(mesh, options, input, points, progress).run();
 }
 
 }  // namespace trimquad

@@ -25,22 +25,6 @@ std::string lowerExtension(const std::filesystem::path& path) {
   return extension.empty() ? extension : extension.substr(1);
 }
 
-MeshSource load(const std::filesystem::path& path) {
-  MeshSource source{path.filename().string(), {}};
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) source.fail("there is no file " + path.string());
-  if (std::filesystem::is_directory(status)) source.fail("the input is a folder, not a file");
-  std::ifstream stream(path, std::ios::binary);
-  const auto size = std::filesystem::file_size(path, error);
-  if (!stream || error) source.fail("the file cannot be opened; check its permissions");
-  if (size == 0) source.fail("the file is empty");
-  source.bytes.resize(size);
-  if (!stream.read(source.bytes.data(), std::streamsize(size)))
-    source.fail("the file cannot be read to its end");
-  return source;
-}
-
 /// Turns the faces of a file into triangles, after checking them.
 class FaceTriangulation {
  public:
@@ -101,6 +85,22 @@ PolygonFile readFormat(const MeshSource& source, const std::string& format) {
 
 }  // namespace
 
+MeshSource loadBytes(const std::filesystem::path& path) {
+  MeshSource source{path.filename().string(), {}};
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) source.fail("there is no file " + path.string());
+  if (std::filesystem::is_directory(status)) source.fail("the input is a folder, not a file");
+  std::ifstream stream(path, std::ios::binary);
+  const auto size = std::filesystem::file_size(path, error);
+  if (!stream || error) source.fail("the file cannot be opened; check its permissions");
+  if (size == 0) source.fail("the file is empty");
+  source.bytes.resize(size);
+  if (!stream.read(source.bytes.data(), std::streamsize(size)))
+    source.fail("the file cannot be read to its end");
+  return source;
+}
+
 void MeshSource::fail(const std::string& message, const std::string& place) const {
   throw inputError("read", message, place.empty() ? name : name + ", " + place);
 }
@@ -113,7 +113,7 @@ void PolygonFile::addPoint(const Eigen::Vector3d& point, const MeshSource& sourc
 
 MeshFile readMesh(const std::filesystem::path& path) {
   const std::string format = lowerExtension(path);
-  const MeshSource source = load(path);
+  const MeshSource source = loadBytes(path);
   PolygonFile file = readFormat(source, format);
   if (file.faceStart.empty()) source.fail("the file holds no faces");
   if (file.points.size() > kLargestCount || file.corners.size() > kLargestCount)

@@ -27,4 +27,9 @@ struct MeshFile {
 /// follow the format.
 MeshFile readMesh(const std::filesystem::path& path);
 
+struct MeshSource;
+/// The bytes of a file (mesh_formats.h). Throws Error(Input, "read") for what is no readable file, or an
+/// empty one.
+MeshSource loadBytes(const std::filesystem::path& path);
+
 }  // namespace trimquad

@@ -35,6 +35,9 @@ struct Region {
   /// Per vertex: the model's corner that it is, where it ends a curve (a CAD vertex that regions share).
   std::vector<std::optional<CornerId>> corner;
 
+  /// Per triangle: the triangle of the input mesh that it lies in, as it was read; empty for CAD models.
+  std::vector<int> inputTriangle;
+
   /// Edges that must lie on grid lines: aligned boundary edges and aligned feature edges. Ascending.
   std::vector<EdgeHandle> aligned;
   /// Vertices that must lie on grid points. Ascending.

@@ -23,6 +23,7 @@ WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const Rem
       parameter(region.curveParameter),
       corner(region.corner),
       fixed(mesh.n_vertices(), 0),
+      pinned(mesh.n_vertices(), 0),
       edgeCurve(region.edgeCurve),
       surface_(*region.surface),
       options_(options),
@@ -33,6 +34,10 @@ WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const Rem
     normal.push_back(onCrease_[v.idx()] ? Vector3d(0, 0, 0) : normalOnSheet(v));
     curvatureSize.push_back(sizeAt(mesh.point(v)));
     if (corner[v.idx()]) fixed[v.idx()] = 1;
+  }
+  for (const auto v : region.featurePoints) {
+    pinned[v.idx()] = 1;
+    if (mesh.is_boundary(v)) fixed[v.idx()] = 1;
   }
   size = curvatureSize;
 }
@@ -101,6 +106,7 @@ VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfa
   parameter.push_back(0);
   corner.emplace_back();
   fixed.push_back(0);
+  pinned.push_back(0);
   onCrease_.push_back(0);
   return mesh.add_vertex(point);
 }
@@ -249,11 +255,13 @@ void WorkingMesh::finish(Region& region) const {
   std::vector<int> number(mesh.n_vertices(), -1);
   region.curveParameter.clear();
   region.corner.clear();
+  region.featurePoints.clear();
   for (const auto v : mesh.vertices()) {
     number[v.idx()] = int(soup.points.size());
     soup.points.push_back(mesh.point(v));
     region.curveParameter.push_back(parameter[v.idx()]);
     region.corner.push_back(corner[v.idx()]);
+    if (pinned[v.idx()]) region.featurePoints.emplace_back(number[v.idx()]);
   }
   for (const auto f : mesh.faces()) {
     const auto h = mesh.halfedge_handle(f);

@@ -23,12 +23,14 @@ class WorkingMesh {
   std::vector<double> size;             ///< wanted edge length
   std::vector<double> parameter;        ///< on the curve, inside one
   std::vector<std::optional<CornerId>> corner;
-  std::vector<char> fixed;  ///< boundary vertices that stay
+  std::vector<char> fixed;   ///< boundary vertices that stay
+  std::vector<char> pinned;  ///< feature points: stay wherever they are
   /// Per edge.
   std::vector<std::optional<CurveId>> edgeCurve;
 
-  /// Whether a vertex may move along the boundary at most: it is on the boundary or on a crease.
-  bool isHeld(VertexHandle v) const { return mesh.is_boundary(v) || onCrease_[v.idx()]; }
+  /// Whether a vertex may move along the boundary at most: it is on the boundary, on a crease or a feature
+  /// point.
+  bool isHeld(VertexHandle v) const { return mesh.is_boundary(v) || onCrease_[v.idx()] || pinned[v.idx()]; }
 
   /// 1 for an equilateral triangle facing the side of `normal`, 0 for a degenerate one, negative for a folded
   /// one.

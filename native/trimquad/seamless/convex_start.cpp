@@ -43,8 +43,7 @@ std::vector<int> wedgeLifts(const SurfaceMesh& mesh, const SeamGraph& seams) {
 std::optional<Eigen::VectorXd> convexStart(const SurfaceMesh& mesh, const SeamGraph& seams,
                                            const SeamBasis& basis, double area,
                                            std::optional<double> period) {
-  for (const int r : seams.rotation)
-    if (r != 0) return std::nullopt;
+  if (!seams.outerLoop && !seams.tube) return std::nullopt;
   const auto loops = boundaryLoops(mesh);
   const auto lift = wedgeLifts(mesh, seams);
 

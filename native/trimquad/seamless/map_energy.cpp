@@ -42,6 +42,10 @@ MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const Sea
       local.toJacobian.col(2 * k + 1) << gy / 2, gx / 2, -gy / 2, gx / 2;
     }
   }
+  std::vector<HessianPattern::Corners> corners;
+  corners.reserve(local_.size());
+  for (const auto& local : local_) corners.push_back(local.coordinate);
+  pattern_ = HessianPattern(basis_, corners);
 }
 
 void MapEnergy::setScaffold(int first, double weight) {
@@ -98,7 +102,7 @@ double MapEnergy::meanSymmetricDirichlet(const Eigen::VectorXd& x) const {
 
 void MapEnergy::addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ,
                             double tangentP, double tangentQ, const Jacobian& j, double follow,
-                            Eigen::VectorXd& gradientX, std::vector<Eigen::Triplet<double>>& entries) const {
+                            Eigen::VectorXd& gradientX, Eigen::SparseMatrix<double>& hessian) const {
   const auto& local = local_[face];
   const double p = std::hypot(j.fzReal, j.fzImag), q = std::hypot(j.fzbarReal, j.fzbarImag);
   const Eigen::Vector2d n = p > 0 ? Eigen::Vector2d(j.fzReal / p, j.fzImag / p) : Eigen::Vector2d(1, 0);
@@ -126,23 +130,19 @@ void MapEnergy::addTriangle(int face, double dP, double dQ, double dPP, double d
       a = c = high, b = 0;
   }
   const Eigen::Vector2d nt(-n.y(), n.x()), mt(-m.y(), m.x());
-  Eigen::Matrix4d hessian;
-  hessian.topLeftCorner<2, 2>() = a * n * n.transpose() + std::max(tangentP, 0.0) * nt * nt.transpose();
-  hessian.bottomRightCorner<2, 2>() = c * m * m.transpose() + std::max(tangentQ, 0.0) * mt * mt.transpose();
-  hessian.topRightCorner<2, 2>() = b * n * m.transpose();
-  hessian.bottomLeftCorner<2, 2>() = b * m * n.transpose();
-  hessian.diagonal().array() += 4 * follow;
+  Eigen::Matrix4d byJacobian;
+  byJacobian.topLeftCorner<2, 2>() = a * n * n.transpose() + std::max(tangentP, 0.0) * nt * nt.transpose();
+  byJacobian.bottomRightCorner<2, 2>() =
+      c * m * m.transpose() + std::max(tangentQ, 0.0) * mt * mt.transpose();
+  byJacobian.topRightCorner<2, 2>() = b * n * m.transpose();
+  byJacobian.bottomLeftCorner<2, 2>() = b * m * n.transpose();
+  byJacobian.diagonal().array() += 4 * follow;
 
   const Eigen::Matrix<double, 6, 1> g = local.area * (local.toJacobian.transpose() * gradient);
   const Eigen::Matrix<double, 6, 6> h =
-      local.area * (local.toJacobian.transpose() * hessian * local.toJacobian);
+      local.area * (local.toJacobian.transpose() * byJacobian * local.toJacobian);
   for (int i = 0; i < 6; ++i) gradientX[local.coordinate[i]] += g[i];
-  using RowIterator = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
-  for (int i = 0; i < 6; ++i)
-    for (int k = 0; k < 6; ++k)
-      for (RowIterator r(basis_.matrix(), local.coordinate[i]); r; ++r)
-        for (RowIterator s(basis_.matrix(), local.coordinate[k]); s; ++s)
-          entries.emplace_back(int(r.col()), int(s.col()), r.value() * s.value() * h(i, k));
+  pattern_.add(face, h, hessian);
 }
 
 }  // namespace trimquad

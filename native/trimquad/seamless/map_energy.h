@@ -3,6 +3,7 @@
 #include <Eigen/Sparse>
 #include <vector>
 
+#include "trimquad/seamless/hessian_pattern.h"
 #include "trimquad/seamless/seam_basis.h"
 #include "trimquad/seamless/seamless_map.h"
 
@@ -59,17 +60,18 @@ class MapEnergy {
 
  private:
   struct Local {
-    std::array<int, 6> coordinate;           ///< u0 v0 u1 v1 u2 v2 in x
+    HessianPattern::Corners coordinate;      ///< u0 v0 u1 v1 u2 v2 in x
     Eigen::Matrix<double, 4, 6> toJacobian;  ///< corner coordinates to (Re fz, Im fz, Re fzbar, Im fzbar)
     double area;
     double following = 1;  ///< factor of `follow`
   };
   void addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ, double tangentP,
                    double tangentQ, const Jacobian& j, double follow, Eigen::VectorXd& gradientX,
-                   std::vector<Eigen::Triplet<double>>& entries) const;
+                   Eigen::SparseMatrix<double>& hessian) const;
 
   const ConstraintBasis& basis_;
   std::vector<Local> local_;
+  HessianPattern pattern_;
   double totalArea_ = 0;
 };
 

@@ -9,8 +9,8 @@ double MapEnergy::value(const Eigen::VectorXd& x, const Density& density, double
   double sum = 0;
   for (int f = 0; f < int(local_.size()); ++f) {
     const Jacobian j = jacobian(f, x);
-    const double off = 2 * ((j.fzReal - 1) * (j.fzReal - 1) + j.fzImag * j.fzImag + j.fzbarReal * j.fzbarReal +
-                            j.fzbarImag * j.fzbarImag);
+    const double off = 2 * ((j.fzReal - 1) * (j.fzReal - 1) + j.fzImag * j.fzImag +
+                            j.fzbarReal * j.fzbarReal + j.fzbarImag * j.fzbarImag);
     sum += local_[f].area * (density(j.norm2(), j.det()).value + local_[f].following * follow * off);
   }
   return sum;
@@ -20,21 +20,19 @@ template <typename Density>
 void MapEnergy::derivatives(const Eigen::VectorXd& x, const Density& density, double follow,
                             Eigen::VectorXd& gradient, Eigen::SparseMatrix<double>& hessian) const {
   Eigen::VectorXd gradientX = Eigen::VectorXd::Zero(basis_.variableCount());
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(local_.size() * 36);
+  hessian = pattern_.zero();
   for (int f = 0; f < int(local_.size()); ++f) {
     const Jacobian j = jacobian(f, x);
     const MapDensity g = density(j.norm2(), j.det());
     // With p = |fz|, q = |fzbar|: I = 2 (p^2 + q^2), D = p^2 - q^2. The Hessian is diagonal in the directions
-    // along the two circles, and a 2 x 2 block radially. (Golla et al. 2018, KP-Newton, for general densities)
+    // along the two circles, and a 2 x 2 block radially. (Golla et al. 2018, KP-Newton, for general
+    // densities)
     const double p = std::hypot(j.fzReal, j.fzImag), q = std::hypot(j.fzbarReal, j.fzbarImag);
     const double tangentP = 4 * g.dI + 2 * g.dD, tangentQ = 4 * g.dI - 2 * g.dD;
     addTriangle(f, p * tangentP, q * tangentQ, tangentP + p * p * (16 * g.dId + 4 * g.dDd),
-                tangentQ + q * q * (-16 * g.dId + 4 * g.dDd), -4 * p * q * g.dDd, tangentP, tangentQ, j, follow, gradientX,
-                entries);
+                tangentQ + q * q * (-16 * g.dId + 4 * g.dDd), -4 * p * q * g.dDd, tangentP, tangentQ, j,
+                follow, gradientX, hessian);
   }
-  hessian.resize(basis_.freeCount(), basis_.freeCount());
-  hessian.setFromTriplets(entries.begin(), entries.end());
   gradient = basis_.matrix().transpose() * gradientX;
 }
 

@@ -92,7 +92,8 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
         position[mesh.from_vertex_handle(h).idx()][axis] = (*start)[basis.coordinate(basis.wedge(h), axis)];
   const Scaffold frame = scaffold(mesh, *seams.outerLoop, position);
   const SurfaceMesh extended = buildSurfaceMesh(frame.soup);
-  const SeamGraph none{std::vector<std::optional<SeamGraph::Crossing>>(extended.n_halfedges()), {}, {}};
+  SeamGraph none;
+  none.crossing.resize(extended.n_halfedges());
   const SeamBasis extendedBasis(extended, none, {});
 
   Eigen::VectorXd x(extendedBasis.basis().variableCount());

@@ -5,13 +5,15 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/boundary_image.h"
+#include "trimquad/seamless/conformal_scale.h"
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
 namespace {
 
-MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, double edgeLength) {
+MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, const std::vector<int>& combing,
+                    double edgeLength) {
   MapTarget target(mesh.n_faces());
   for (const auto f : mesh.faces()) {
     HalfedgeHandle h = mesh.halfedge_handle(f);
@@ -19,11 +21,35 @@ MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, double edg
     for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h))
       p[k] = mesh.point(mesh.from_vertex_handle(h));
     const Eigen::Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
-    const Eigen::Vector3d u = field.direction[f.idx()], v = normal.cross(u);
+    Eigen::Vector3d u = field.direction[f.idx()];
+    for (int turn = 0; turn < combing[f.idx()]; ++turn) u = normal.cross(u);
+    const Eigen::Vector3d v = normal.cross(u);
     for (int k = 0; k < 3; ++k)
       target[f.idx()][k] = Eigen::Vector2d((p[k] - p[0]).dot(u), (p[k] - p[0]).dot(v)) / edgeLength;
   }
   return target;
+}
+
+/// The target's image of a side of a triangle, from its start to its end.
+Eigen::Vector2d alongSide(const SurfaceMesh& mesh, const MapTarget& target, HalfedgeHandle side) {
+  const auto f = mesh.face_handle(side);
+  int k = 0;
+  for (auto h = mesh.halfedge_handle(f); h != side; h = mesh.next_halfedge_handle(h)) ++k;
+  return target[f.idx()][(k + 1) % 3] - target[f.idx()][k];
+}
+
+/// The sides of triangles along aligned edges, with the coordinate that the target keeps constant there.
+std::vector<AlignedSide> alignedSides(const Region& region, const MapTarget& target) {
+  const auto& mesh = region.mesh;
+  std::vector<AlignedSide> sides;
+  for (const auto e : region.aligned)
+    for (int k = 0; k < 2; ++k) {
+      const auto side = mesh.halfedge_handle(e, k);
+      if (mesh.is_boundary(side)) continue;
+      const Eigen::Vector2d d = alongSide(mesh, target, side);
+      sides.push_back({side, std::abs(d.x()) < std::abs(d.y()) ? 0 : 1});
+    }
+  return sides;
 }
 
 /// How far, in quads, one end of a tube runs along the field's two directions on its way around.
@@ -32,11 +58,7 @@ Eigen::Vector2d lengthAlongEnd(const SurfaceMesh& mesh, const CrossField& field,
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   const auto end = std::find(field.loopTurns.begin(), field.loopTurns.end(), 0) - field.loopTurns.begin();
   for (const auto boundary : loops[size_t(end)]) {
-    const auto inner = mesh.opposite_halfedge_handle(boundary);
-    const auto f = mesh.face_handle(inner);
-    int k = 0;
-    for (auto h = mesh.halfedge_handle(f); h != inner; h = mesh.next_halfedge_handle(h)) ++k;
-    sum += target[f.idx()][(k + 1) % 3] - target[f.idx()][k];
+    sum += alongSide(mesh, target, mesh.opposite_halfedge_handle(boundary));
   }
   return sum;
 }
@@ -63,21 +85,21 @@ bool overlaps(const Parametrization& map, const SeamGraph& seams) {
   return firstContact(segments, around).has_value();
 }
 
-/// The seams of a plane region, whatever the field: none. The outer loop is the field's, or the longer end of
-/// its tube.
-SeamGraph withoutSeams(const SurfaceMesh& mesh, const CrossField& field) {
-  SeamGraph seams;
-  seams.crossing.resize(mesh.n_halfedges());
+/// The loop that is to go around the others where a region is mapped as one plane chart: the field's outer
+/// loop, or the longer end of its tube.
+int outerLoopOf(const SurfaceMesh& mesh, const CrossField& field) {
   const auto loops = boundaryLoops(mesh);
+  int outer = -1;
   double longest = -1;
   for (int l = 0; l < int(loops.size()); ++l) {
     double length = 0;
     for (const auto h : loops[l]) length += mesh.calc_edge_length(h);
     if (field.loopTurns[l] < 0 || length <= longest) continue;
     longest = length;
-    seams.outerLoop = l;
+    outer = l;
   }
-  return seams;
+  TRIMQUAD_ASSERT(outer >= 0);
+  return outer;
 }
 
 }  // namespace
@@ -87,33 +109,39 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   if (!(edgeLength > 0) || !std::isfinite(edgeLength))
     throw inputError("seamless", "the edge length must be a positive number");
   const auto& mesh = region.mesh;
-  const MapTarget target = mapTarget(mesh, field, edgeLength);
-  const SeamGraph seams = seamGraph(mesh, field);
-  // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
-  // grid wind around the tube like a thread.
-  std::vector<BranchTranslation> translations(seams.rotation.size());
-  if (!translations.empty()) {
-    const Eigen::Vector2d around = lengthAlongEnd(mesh, field, target);
-    translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
-  }
-  const SeamBasis basis(mesh, seams, translations);
   SeamlessMap map;
-  const Eigen::VectorXd z =
-      solveMap(mesh, seams, target, field.index, basis, "seamless", map.counters, progress);
+  map.seams = seamGraph(mesh, field);
+  map.target = mapTarget(mesh, field, map.seams.combing, edgeLength);
+  map.conformalScale = conformalScale(mesh, field);
+  map.alignedSides = alignedSides(region, map.target);
+  map.index = field.index;
+  SeamConstraints constraints;
+  constraints.aligned = map.alignedSides;
+  if (map.seams.tube) {
+    // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
+    // grid wind around the tube like a thread.
+    const Eigen::Vector2d around = lengthAlongEnd(mesh, field, map.target);
+    constraints.translations.resize(1);
+    constraints.translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
+  }
+  const SeamBasis basis(mesh, map.seams, constraints);
+  const Eigen::VectorXd z = solveMap(mesh, map.seams, map.target, map.conformalScale, field.index, basis,
+                                     "seamless", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
-  map.seams = seams;
   // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
   // A tube that is not becomes a plane region, whose map cannot follow the field.
-  if (overlaps(map, seams)) {
+  if ((map.seams.outerLoop || map.seams.tube) && region.aligned.empty() && overlaps(map, map.seams)) {
+    const double follow = map.seams.tube ? 0.0 : kFollow;
     map.counters.scaffolded = true;
-    map.seams = withoutSeams(mesh, field);
+    map.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
     const SeamBasis plane(mesh, map.seams, {});
-    const double follow = seams.rotation.empty() ? kFollow : 0.0;
-    const Eigen::VectorXd apart = oneToOneMap(mesh, map.seams, target, plane, follow, map.counters, progress);
+    const Eigen::VectorXd apart =
+        oneToOneMap(mesh, map.seams, map.target, plane, follow, map.counters, progress);
     static_cast<Parametrization&>(map) = exactMap(mesh, plane, apart, false);
   }
-  map.target = target;
-  map.index = field.index;
+  map.aligned = region.aligned;
+  map.featurePoints = region.featurePoints;
+  verify(map, false);
   return map;
 }
 

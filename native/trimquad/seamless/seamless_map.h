@@ -7,7 +7,7 @@
 #include "trimquad/field/cross_field.h"
 #include "trimquad/mesh/parametrization.h"
 #include "trimquad/mesh/region.h"
-#include "trimquad/seamless/seam_graph.h"
+#include "trimquad/seamless/seam_basis.h"
 
 namespace trimquad {
 
@@ -17,8 +17,9 @@ using MapTarget = std::vector<std::array<Eigen::Vector2d, 3>>;
 
 /// How a map came about.
 struct MapCounters {
-  int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
-  int untangleIterations = 0;  ///< Newton steps until none was
+  int flippedBefore = 0;        ///< triangles that the Poisson solve turned over
+  int untangleIterations = 0;   ///< Newton steps until none was
+  bool conformalStart = false;  ///< whether that failed, and was done again from a nearly conformal map
   bool convexStart =
       false;  ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
   bool scaffolded =
@@ -31,6 +32,8 @@ struct MapCounters {
 struct SeamlessMap : Parametrization {
   SeamGraph seams;
   MapTarget target;
+  std::vector<double> conformalScale;  ///< by face; see conformalScale()
+  std::vector<AlignedSide> alignedSides;
   std::vector<int>
       index;  ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
   MapCounters counters;

@@ -9,17 +9,19 @@
 #include "trimquad/seamless/convex_start.h"
 #include "trimquad/seamless/map_energy.h"
 #include "trimquad/seamless/newton.h"
+#include "trimquad/seamless/winding.h"
 
 namespace trimquad {
 namespace {
 
 constexpr double kConverged = 1e-3;  // relative decrease of the energy in a step, at which optimisation ends
 
-/// Newton steps on the foldover-free energy until no triangle is flipped; whether that was reached.
-bool untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
+/// Newton steps on the foldover-free energy until no triangle is flipped, or no progress is made.
+void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
               const Progress& progress) {
   SparseSolver solver("seamless");
   double least = energy.smallestDeterminant(energy.coordinates(z));
+  if (least > 0) return;
   int stalled = 0;
   constexpr int kRounds = 40, kStepsPerRound = 8;
   for (int round = 0; round < kRounds && stalled < 6; ++round) {
@@ -32,32 +34,11 @@ bool untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& 
       ++iterations;
       const Eigen::VectorXd x = energy.coordinates(z);
       least = energy.smallestDeterminant(x);
-      if (least > 0) return true;
+      if (least > 0) return;
       if (least > roundStart / 2 || decrease < 1e-5) break;
     }
     stalled = least > roundStart * (1 - 1e-3) ? 0 : stalled + 1;
   }
-  return false;
-}
-
-/// The first interior vertex that the map winds around more or less often than its index says. Positive
-/// triangles alone do not exclude that: a fan can wind around its vertex twice.
-std::optional<VertexHandle> wrongCone(const SurfaceMesh& mesh, const std::vector<int>& index,
-                                      const SeamBasis& basis, const Eigen::VectorXd& x) {
-  const auto image = [&](HalfedgeHandle h) {
-    return Eigen::Vector2d(x[basis.coordinate(basis.wedge(h), 0)], x[basis.coordinate(basis.wedge(h), 1)]);
-  };
-  for (const auto v : mesh.vertices()) {
-    if (mesh.is_boundary(v)) continue;
-    double angle = 0;
-    for (const auto h : mesh.voh_range(v)) {
-      const Eigen::Vector2d a = image(mesh.next_halfedge_handle(h)) - image(h),
-                            b = image(mesh.prev_halfedge_handle(h)) - image(h);
-      angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-    }
-    if (std::lround(angle / (M_PI / 2)) != 4 - index[v.idx()]) return v;
-  }
-  return std::nullopt;
 }
 
 /// The map turned as a whole so that it follows the target best, within `quarters` only where the map has a
@@ -135,10 +116,10 @@ std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMe
                        std::to_string(energy.flipped(x)) +
                            " triangles stay turned over in the map; a finer or smoother mesh may help",
                        "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
-  const auto v = wrongCone(mesh, index, basis, x);
-  TRIMQUAD_ASSERT(v.has_value());
+  const auto wrong = wrongCones(mesh, index, basis, x);
+  TRIMQUAD_ASSERT(!wrong.empty());
   throw stageError(stage, "the map winds around a vertex twice; a finer or smoother mesh may help",
-                   "vertex " + std::to_string(v->idx()), mesh.point(*v));
+                   "vertex " + std::to_string(wrong.front().idx()), mesh.point(wrong.front()));
 }
 
 }  // namespace
@@ -156,16 +137,30 @@ Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, con
 }
 
 Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
-                         const std::vector<int>& index, const SeamBasis& basis, const std::string& stage,
-                         MapCounters& counters, const Progress& progress) {
+                         const std::vector<double>& conformalScale, const std::vector<int>& index,
+                         const SeamBasis& basis, const std::string& stage, MapCounters& counters,
+                         const Progress& progress) {
   const MapEnergy energy(mesh, target, basis);
   const Eigen::VectorXd poisson = poissonMap(mesh, target, basis);
   progress.report(0.2);
   Eigen::VectorXd z = poisson;
   counters.flippedBefore = energy.flipped(energy.coordinates(z));
-  const bool positive =
-      counters.flippedBefore == 0 || untangle(energy, basis, z, counters.untangleIterations, progress);
-  if (!positive || wrongCone(mesh, index, basis, energy.coordinates(z))) {
+  const auto injective = [&] {
+    return energy.flipped(energy.coordinates(z)) == 0 &&
+           wrongCones(mesh, index, basis, energy.coordinates(z)).empty();
+  };
+  if (counters.flippedBefore > 0) untangle(energy, basis, z, counters.untangleIterations, progress);
+  if (!injective()) {
+    // Cones can have been wound up the wrong way: start again from a nearly conformal map.
+    counters.conformalStart = true;
+    MapTarget scaled = target;
+    for (size_t f = 0; f < scaled.size(); ++f)
+      for (auto& corner : scaled[f]) corner *= conformalScale[f];
+    const MapEnergy conformal(mesh, scaled, basis);
+    z = poissonMap(mesh, scaled, basis);
+    if (!injective()) untangle(conformal, basis, z, counters.untangleIterations, progress);
+  }
+  if (!injective()) {
     const auto grown = grownMap(energy, mesh, seams, target, basis, poisson);
     if (!grown) throwStillFlipped(mesh, index, basis, energy, energy.coordinates(z), stage);
     z = *grown;

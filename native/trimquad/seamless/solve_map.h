@@ -17,8 +17,9 @@ Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, con
 /// index  singularity index per vertex; the map's cone angles are (4 - index) * 90 degrees \param stage named
 /// in the Error(Stage) that is thrown where no rung holds
 Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
-                         const std::vector<int>& index, const SeamBasis& basis, const std::string& stage,
-                         MapCounters& counters, const Progress& progress);
+                         const std::vector<double>& conformalScale, const std::vector<int>& index,
+                         const SeamBasis& basis, const std::string& stage, MapCounters& counters,
+                         const Progress& progress);
 
 /// The map of a plane region without seams, z, kept one to one by a scaffold: triangles that fill the holes
 /// and surround the outer loop must not collapse either while the map grows from a convex embedding. Other

@@ -37,6 +37,19 @@ TEST(ConstraintBasis, fixedPointOfAQuarterTurnIsHalved) {
   EXPECT_EQ(x[3] - x[2], x[1]);
 }
 
+/// As along a seam or an aligned edge; in the order that makes every variable depend on the next.
+TEST(ConstraintBasis, longChainsTakeLinearTime) {
+  constexpr int kLength = 200000;
+  ConstraintBasis basis(kLength + 1);  // a translation, then the chain
+  for (int i = kLength; i > 1; --i)
+    ASSERT_TRUE(basis.addEquation({{i, 1}, {i - 1, -1}, {0, -(i % 2)}}, i % 3));
+  EXPECT_FALSE(basis.addEquation({{1, 1}, {kLength, -1}, {0, kLength / 2 - 1}}, 0));
+  basis.finish();
+  ASSERT_EQ(basis.freeCount(), 2);
+  const Eigen::VectorXd x = basis.matrix() * Eigen::Vector2d(0.25, 3) + basis.offset();
+  for (int i = kLength; i > 1; --i) ASSERT_NEAR(x[i] - x[i - 1] - 0.25 * (i % 2), i % 3, 1e-9);
+}
+
 TEST(ConstraintBasis, randomSystemsHoldExactly) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);

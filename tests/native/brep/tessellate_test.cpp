@@ -126,8 +126,8 @@ TEST(Tessellate, boxHasSixRegionsAndTwelveSharedCurves) {
 
 TEST(Tessellate, edgesAreNamedAsFreeCADCountsThem) {
   const Shape box(BRepPrimAPI_MakeBox(1, 2, 3).Shape());
-  const Model whole = tessellate(box, {0.3, 0.02, 30, {}}, Progress());
-  const Model part = tessellate(box.subShape({4}), {0.3, 0.02, 30, {}}, Progress());
+  const Model whole = tessellate(box, {0.3, 0.02}, Progress());
+  const Model part = tessellate(box.subShape({4}), {0.3, 0.02}, Progress());
   ASSERT_EQ(part.curves.size(), 4u);
   for (const auto& curve : part.curves) {
     const auto same = std::find_if(whole.curves.begin(), whole.curves.end(),
@@ -258,7 +258,7 @@ TEST(Tessellate, facesThatOnlyTouchAreSewn) {
 TEST(Tessellate, sharpEdgesCanBeIgnored) {
   TessellateOptions options;
   options.edgeLength = 0.3;
-  options.features = TessellateOptions::Features::Ignore;
+  options.features.sharp = FeatureOptions::Sharp::Ignore;
   const Model model = tessellate(Shape(BRepPrimAPI_MakeBox(1, 2, 3).Shape()), options, Progress());
   ASSERT_EQ(model.regions.size(), 1u);
   EXPECT_EQ(eulerCharacteristic(model.regions[0].mesh), 2);
@@ -280,9 +280,9 @@ TEST(Tessellate, unusableOptionsAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinite = std::numeric_limits<double>::infinity();
   for (const double bad : {0.0, -1.0, nan, infinite}) {
-    EXPECT_THROW(tessellate(box, {bad, 0.1, 30, {}}, Progress()), Error);
-    EXPECT_THROW(tessellate(box, {0.1, bad, 30, {}}, Progress()), Error);
-    EXPECT_THROW(tessellate(box, {0.1, 0.1, bad, {}}, Progress()), Error);
+    EXPECT_THROW(tessellate(box, {bad, 0.1, {}}, Progress()), Error);
+    EXPECT_THROW(tessellate(box, {0.1, bad, {}}, Progress()), Error);
+    EXPECT_THROW(tessellate(box, {0.1, 0.1, {.angle = bad}}, Progress()), Error);
   }
 }
 

@@ -6,13 +6,19 @@
 
 #include "support/sample_regions.h"
 #include "trimquad/base/error.h"
+#include "trimquad/field/curvature_guidance.h"
+#include "trimquad/field/singularity_free_field.h"
 #include "trimquad/mesh/boundary_image.h"
 
 namespace trimquad {
 namespace {
 
+CrossField fieldOf(const Region& r) {
+  return singularityFreeField(r.mesh, curvatureGuidance(r, Progress()), Progress());
+}
+
 GridMap mapOf(const Region& r, double edgeLength) {
-  const CrossField field = crossField(r, Progress());
+  const CrossField field = fieldOf(r);
   return gridMap(seamlessMap(r, field, edgeLength, Progress()), Progress());
 }
 
@@ -79,7 +85,7 @@ TEST(GridMap, spiralRampIsUnrolledWithoutCoveringThePlaneTwice) {
     const double a = 3 * M_PI * s, radius = 2 - t;
     return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), 0.1 * a);
   }));
-  const SeamlessMap map = seamlessMap(r, crossField(r, Progress()), 0.1, Progress());
+  const SeamlessMap map = seamlessMap(r, fieldOf(r), 0.1, Progress());
   EXPECT_TRUE(map.counters.scaffolded);
   verify(map, false);
   std::vector<BoundarySegment> segments;
@@ -111,7 +117,7 @@ TEST(GridMap, isTheSameFromRunToRun) {
 
 TEST(GridMap, stopsWhenCancelled) {
   const Region r = sample::region(sample::sheet(30, 30, sample::wavy));
-  const CrossField field = crossField(r, Progress());
+  const CrossField field = fieldOf(r);
   Progress progress;
   progress.cancel();
   EXPECT_THROW(seamlessMap(r, field, 0.2, progress), Error);

@@ -13,6 +13,10 @@ Model modelOf(const TriangleSoup& soup, const MeshModelOptions& options = {}) {
   return meshModel(soup, options, Progress{});
 }
 
+MeshModelOptions trimmedAt(double degrees) {
+  return {.features = {.sharp = FeatureOptions::Sharp::Trim, .angle = degrees}};
+}
+
 std::set<std::string> curveNames(const Model& model) {
   std::set<std::string> names;
   for (const auto& curve : model.curves) names.insert(curve.name);
@@ -109,7 +113,7 @@ TEST(MeshModel, componentsBecomeRegionsAndClosedOnesSolids) {
 }
 
 TEST(MeshModel, aCubeIsCutIntoItsFacesWhichShareTwelveEdges) {
-  const Model model = modelOf(cube(), {.trimAngle = 30});
+  const Model model = modelOf(cube(), trimmedAt(30));
   expectConsistent(model);
   EXPECT_EQ(model.regions.size(), 6u);
   EXPECT_EQ(model.curves.size(), 12u);
@@ -126,7 +130,7 @@ TEST(MeshModel, aCubeIsCutIntoItsFacesWhichShareTwelveEdges) {
 TEST(MeshModel, aRoofIsCutAlongItsRidgeWithTheSameVerticesOnBothSides) {
   const auto roof =
       sheet(8, 10, [](double i, double j) { return Eigen::Vector3d(i, j, 4 - std::abs(i - 4)); });
-  const Model model = modelOf(roof, {.trimAngle = 30});
+  const Model model = modelOf(roof, trimmedAt(30));
   expectConsistent(model);
   ASSERT_EQ(model.regions.size(), 2u);
   EXPECT_EQ(model.regions[0].name, "component 0 part 0");
@@ -155,7 +159,7 @@ TEST(MeshModel, sharpEdgesThatEncloseNothingCutNothing) {
   const auto soup = sheet(8, 16, [](double i, double j) {
     return Eigen::Vector3d(i, j, std::max(0.0, j - 6) / 3 * std::max(0.0, 1 - std::abs(i - 4) / 4));
   });
-  EXPECT_EQ(modelOf(soup, {.trimAngle = 30}).regions.size(), 1u);
+  EXPECT_EQ(modelOf(soup, trimmedAt(30)).regions.size(), 1u);
 }
 
 TEST(MeshModel, aVertexInWhichARegionTouchesItselfBecomesTwo) {
@@ -164,7 +168,7 @@ TEST(MeshModel, aVertexInWhichARegionTouchesItselfBecomesTwo) {
     const bool peak = (i == 2 && j == 2) || (i == 4 && j == 4);
     return Eigen::Vector3d(i, j, peak ? 2 : 0);
   });
-  const Model model = modelOf(soup, {.trimAngle = 30});
+  const Model model = modelOf(soup, trimmedAt(30));
   expectConsistent(model);
   const auto& plain = model.regions[0];
   std::vector<CornerId> copies;
@@ -181,7 +185,7 @@ TEST(MeshModel, randomHeightFieldsKeepTheContractAndTheArea) {
   for (int round = 0; round < 60; ++round) {
     const auto soup =
         sheet(7, 7, [&](double i, double j) { return Eigen::Vector3d(i, j, double(random() % 3)); });
-    const Model model = modelOf(soup, {.trimAngle = 20.0 + round});
+    const Model model = modelOf(soup, trimmedAt(20.0 + round));
     expectConsistent(model);
     double area = 0;
     for (const auto& region : model.regions) area += surfaceArea(region.mesh);

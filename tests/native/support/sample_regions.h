@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include "trimquad/mesh/region.h"
 
@@ -97,6 +99,67 @@ inline Shape dome(double angle) {
     return r == 0 ? Eigen::Vector3d(0, 0, 1)
                   : Eigen::Vector3d(std::sin(a) * x / r, std::sin(a) * y / r, std::cos(a));
   };
+}
+
+/// A closed surface of genus 1: around x around.
+inline TriangleSoup torus(int columns, int rows, double radius = 3) {
+  TriangleSoup soup;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const double a = 2 * std::numbers::pi * i / columns, b = 2 * std::numbers::pi * j / rows,
+                   r = radius + std::cos(a);
+      soup.points.emplace_back(r * std::cos(b), r * std::sin(b), -std::sin(a));
+    }
+  const auto at = [&](int i, int j) { return i % columns + columns * (j % rows); };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      soup.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      soup.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return soup;
+}
+
+/// The surface of the union of unit boxes at whole-number places, each side of a box n x n cells of two
+/// triangles. Boxes must not touch along an edge or in a corner only.
+inline TriangleSoup boxes(const std::vector<std::array<int, 3>>& places, int n) {
+  const std::set<std::array<int, 3>> filled(places.begin(), places.end());
+  std::map<std::array<int, 3>, int> number;
+  TriangleSoup soup;
+  const auto point = [&](std::array<int, 3> p) {
+    const auto [it, isNew] = number.emplace(p, int(soup.points.size()));
+    if (isNew) soup.points.push_back(Eigen::Vector3d(p[0], p[1], p[2]) / n);
+    return it->second;
+  };
+  for (const auto& box : filled)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {0, 1}) {
+        auto neighbour = box;
+        neighbour[axis] += side ? 1 : -1;
+        if (filled.count(neighbour)) continue;
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        for (int i = 0; i < n; ++i)
+          for (int j = 0; j < n; ++j) {
+            const auto at = [&](int di, int dj) {
+              std::array<int, 3> p;
+              p[axis] = n * (box[axis] + side);
+              p[b] = n * box[b] + i + di;
+              p[c] = n * box[c] + j + dj;
+              return point(p);
+            };
+            std::array<int, 4> q{at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+            if (!side) std::swap(q[1], q[3]);
+            soup.triangles.push_back({q[0], q[1], q[2]});
+            soup.triangles.push_back({q[0], q[2], q[3]});
+          }
+      }
+  return soup;
+}
+
+/// A cube of n x n cells a side, blown up to the unit sphere.
+inline TriangleSoup sphere(int n) {
+  TriangleSoup soup = boxes({{0, 0, 0}}, n);
+  for (auto& p : soup.points) p = (p - Eigen::Vector3d::Constant(0.5)).normalized();
+  return soup;
 }
 
 }  // namespace trimquad::sample

@@ -1,0 +1,9 @@
+"""Colours that pictures and the 3D view share."""
+
+# Singular vertices by their index in quarter turns; a darker red or blue beyond.
+_POINTS = {1: (0.84, 0.15, 0.16), -1: (0.12, 0.31, 0.84), 2: (0.50, 0.06, 0.06), -2: (0.04, 0.12, 0.40)}
+
+
+def point_colour(index):
+    """Red, green, blue of a singular vertex of that index: reds where fewer than four quads meet, blues where more do."""
+    return _POINTS.get(index, _POINTS[2 if index > 0 else -2])

@@ -1,0 +1,56 @@
+#include "trimquad/field/field_topology.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "trimquad/base/error.h"
+#include "trimquad/field/loop_turning.h"
+
+namespace trimquad {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kQuarter = kPi / 2;
+
+/// `x` in whole quarter turns, which it must be but for rounding.
+int quarters(double x) {
+  const double count = x / kQuarter;
+  TRIMQUAD_ASSERT(std::abs(count - std::round(count)) < 0.05);
+  return int(std::lround(count));
+}
+
+}  // namespace
+
+void settleTopology(const SurfaceMesh& mesh, const Transport& transport, CrossField& field) {
+  std::vector<double> angle(mesh.n_faces()), turn(mesh.n_halfedges(), 0.0);
+  for (const auto f : mesh.faces()) angle[f.idx()] = transport.angleOf(f, field.direction[f.idx()]);
+  field.matching.assign(mesh.n_halfedges(), 0);
+  for (const auto e : mesh.edges()) {
+    if (mesh.is_boundary(e)) continue;
+    const auto h = mesh.halfedge_handle(e, 0), o = mesh.halfedge_handle(e, 1);
+    const double whole =
+        angle[mesh.face_handle(o).idx()] - angle[mesh.face_handle(h).idx()] - transport.angle[h.idx()];
+    field.matching[h.idx()] = int(std::lround(whole / kQuarter));
+    field.matching[o.idx()] = -field.matching[h.idx()];
+    turn[h.idx()] = whole - kQuarter * field.matching[h.idx()];
+    turn[o.idx()] = -turn[h.idx()];
+  }
+  int total = 0;
+  field.index.assign(mesh.n_vertices(), 0);
+  for (const auto v : mesh.vertices()) {
+    if (mesh.is_boundary(v)) continue;
+    double sum = gaussCurvature(mesh, v);
+    for (const auto out : mesh.voh_range(v)) sum += turn[mesh.prev_halfedge_handle(out).idx()];
+    total += field.index[v.idx()] = quarters(sum);
+  }
+  field.loopTurns.clear();
+  for (const auto& loop : boundaryLoops(mesh)) {
+    double sum = tangentTurn(mesh, loop);
+    walkBeside(mesh, loop, [&](HalfedgeHandle h) { sum -= turn[h.idx()]; });
+    field.loopTurns.push_back(quarters(sum));
+    total += field.loopTurns.back();
+  }
+  TRIMQUAD_ASSERT(total == 4 * eulerCharacteristic(mesh));
+}
+
+}  // namespace trimquad

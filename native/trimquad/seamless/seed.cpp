@@ -1,0 +1,94 @@
+#include "trimquad/seamless/seed.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "trimquad/base/error.h"
+#include "trimquad/field/curvature_guidance.h"
+#include "trimquad/field/singularity_free_field.h"
+
+namespace trimquad {
+namespace {
+
+/// The mean symmetric Dirichlet energy up to which a map without singularities is worth more than one with
+/// them; 4 is an isometry.
+constexpr double kLittleDistortion = 4.5;
+
+/// How far the guidance reaches; see crossField.
+constexpr double kCurvatureReach = 4, kGivenReach = 40;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+FieldGuidance guidanceFor(const Region& region, const SeedOptions& options, const Progress& progress) {
+  switch (options.follow) {
+    case SeedOptions::Follow::Given:
+      TRIMQUAD_ASSERT(options.guidance.has_value());
+      return *options.guidance;
+    case SeedOptions::Follow::Curvature:
+      return curvatureGuidance(region, progress);
+    case SeedOptions::Follow::Smooth:
+      break;
+  }
+  return {std::vector<Eigen::Vector3d>(region.mesh.n_faces(), Eigen::Vector3d::UnitX()),
+          std::vector<double>(region.mesh.n_faces(), 0.0)};
+}
+
+/// Runs `field`, then maps it; adds the seconds to `seed`.
+template <typename Field>
+void tryField(const Region& region, double edgeLength, const Field& field, const Progress& progress,
+              Seed& seed) {
+  auto start = std::chrono::steady_clock::now();
+  seed.field = field();
+  seed.fieldSeconds += secondsSince(start);
+  start = std::chrono::steady_clock::now();
+  struct Timer {
+    std::chrono::steady_clock::time_point start;
+    double& seconds;
+    ~Timer() { seconds += secondsSince(start); }
+  } timer{start, seed.seamlessSeconds};
+  seed.map = seamlessMap(region, seed.field, edgeLength, progress);
+}
+
+}  // namespace
+
+Seed seed(const Region& region, const SeedOptions& options, const Progress& progress) {
+  requireArea(region.mesh);
+  Seed result;
+  const auto start = std::chrono::steady_clock::now();
+  const FieldGuidance guidance = guidanceFor(region, options, progress);
+  result.fieldSeconds = secondsSince(start);
+
+  const bool constrained = !region.aligned.empty() || !region.featurePoints.empty();
+  if (options.follow != SeedOptions::Follow::Given && !constrained && admitsNoSingularity(region.mesh)) {
+    try {
+      tryField(
+          region, options.edgeLength, [&] { return singularityFreeField(region.mesh, guidance, progress); },
+          progress, result);
+      if (result.map.counters.distortionEnd <= kLittleDistortion) return result;
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::Stage) throw;
+    }
+  }
+
+  std::vector<double> reaches{options.follow == SeedOptions::Follow::Given ? kGivenReach : kCurvatureReach};
+  while (reaches.back() > 1) reaches.push_back(reaches.back() / 4);
+  if (options.follow != SeedOptions::Follow::Smooth) reaches.push_back(0);
+  std::optional<Error> first;
+  for (const double reach : reaches) {
+    try {
+      tryField(
+          region, options.edgeLength, [&] { return crossField(region, guidance, reach, progress); }, progress,
+          result);
+      return result;
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::Stage) throw;
+      if (!first) first = error;
+      ++result.fieldEdits;
+    }
+  }
+  throw *first;
+}
+
+}  // namespace trimquad

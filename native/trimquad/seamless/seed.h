@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "trimquad/field/cross_field.h"
+#include "trimquad/seamless/seamless_map.h"
+
+namespace trimquad {
+
+/// What the directions of the map follow.
+struct SeedOptions {
+  enum class Follow {
+    Smooth,     ///< nothing but smoothness and the aligned edges
+    Curvature,  ///< the principal directions where they are distinct
+    Given       ///< `guidance`, closely
+  };
+  Follow follow = Follow::Curvature;
+  std::optional<FieldGuidance> guidance;  ///< for Follow::Given
+  double edgeLength = 1;                  ///< of a quad, model units
+};
+
+/// A field and the seamless map that follows it: what the rest of the pipeline starts from. (The input of the
+/// paper, section 3)
+struct Seed {
+  CrossField field;
+  SeamlessMap map;
+  int fieldEdits = 0;  ///< smoother fields that were tried because no map followed the first one
+  double fieldSeconds = 0, seamlessSeconds = 0;
+};
+
+/// A map without singularities where the region has one of little distortion; else the map of the smoothest
+/// field. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
+/// to one that follows nothing but the aligned edges. Throws Error(Stage) of the first field where none has a
+/// map.
+Seed seed(const Region& region, const SeedOptions& options, const Progress& progress);
+
+}  // namespace trimquad
