@@ -5,6 +5,8 @@
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/singularity_free_field.h"
 #include "trimquad/gridmap/grid_map.h"
+#include "trimquad/quantize/quantize.h"
+#include "trimquad/tmesh/partition.h"
 
 using namespace trimquad;
 
@@ -61,7 +63,9 @@ void optimize(benchmark::State& state) {
   const Region region = sheetOrTube(int(state.range(0)), state.range(1) != 0);
   const SeamlessMap map =
       seamlessMap(region, fieldOf(region), edgeLengthOf(region), Progress());
-  for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, Progress()));
+  const TMesh tmesh = partition(map, Progress());
+  const Quantization quantization = quantize(tmesh, {}, Progress());
+  for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, tmesh, quantization, Progress()));
   state.counters["triangles"] = double(region.mesh.n_faces());
   state.SetComplexityN(std::int64_t(region.mesh.n_faces()));
 }
