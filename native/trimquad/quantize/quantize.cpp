@@ -10,7 +10,7 @@ namespace {
 
 /// Branches times arcs: milliseconds; finds most optima of T-meshes that are not large.
 constexpr long long kWorkInPassing = 20000;
-/// Some seconds, some hundred megabytes.
+/// Up to a minute or so, and some hundred megabytes.
 constexpr long long kWorkForProof = 2000000;
 
 }  // namespace
