@@ -11,7 +11,7 @@ from .native import load
 from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
-    r"(seamless|gridmap|quads)(-\d+)?\.obj|tmesh(-\d+)?\.json|nurbs\.(step|brep)|report\.json|trimquad\.FCStd|(map|quads|nurbs)\.png"
+    r"(seamless|gridmap|quads)(-\d+)?\.obj|tmesh(-\d+)?\.json|nurbs\.(step|brep)|report\.json|trimquad\.FCStd|(map|quads|nurbs|tmesh|tmesh_unfolded)\.png"
 )
 
 

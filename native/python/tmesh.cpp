@@ -58,16 +58,36 @@ py::list patchesOf(const TMesh& tmesh) {
   return patches;
 }
 
+/// Corners of each arc's course in space, n x 3; of a virtual arc the places of its nodes.
+py::list curvesOf(const TMesh& tmesh, const Parametrization& map) {
+  py::list curves;
+  for (const auto& arc : tmesh.arcs) {
+    std::vector<Eigen::Vector3d> points{tmesh[arc.from].position};
+    for (const auto& leg : arc.legs) points.push_back(placeInSpace(map, leg.to));
+    if (arc.isVirtual) points.push_back(tmesh[arc.to].position);
+    Eigen::MatrixX3d rows(points.size(), 3);
+    for (std::size_t k = 0; k < points.size(); ++k) rows.row(Eigen::Index(k)) = points[k];
+    curves.append(rows);
+  }
+  return curves;
+}
+
 }  // namespace
 
 void bindTMesh(py::module_& m) {
   py::class_<TMesh>(m, "TMesh")
       .def_property_readonly("nodes", &nodesOf, "(kind, critical, border, xyz) each")
       .def_property_readonly("arcs", &arcsOf, "(from, to, length in quads, virtual, border, critical) each")
-      .def_property_readonly("patches", &patchesOf,
-                             "(type, sides) each; an arc is its number + 1, negative where it is walked backward");
+      .def_property_readonly(
+          "patches", &patchesOf,
+          "(type, sides) each; an arc is its number + 1, negative where it is walked backward");
+  m.def(
+      "arc_curves", [](const TMesh& tmesh, const SeamlessMap& map) { return curvesOf(tmesh, map); },
+      py::arg("tmesh"), py::arg("seamless"),
+      "Corners of each arc's course in space, n x 3; of a virtual arc the places of its nodes.");
   py::class_<Parametrization>(m, "Map");
-  m.def("read_map", &readMapObj, py::arg("name"), py::arg("text"), Released(), "The map in the text of an OBJ file.");
+  m.def("read_map", &readMapObj, py::arg("name"), py::arg("text"), Released(),
+        "The map in the text of an OBJ file.");
   m.def(
       "partition", [](const SeamlessMap& map, const Progress& progress) { return partition(map, progress); },
       py::arg("seamless"), py::arg("progress"), Released());

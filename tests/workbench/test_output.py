@@ -123,7 +123,8 @@ def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
     import FreeCAD
 
     result = trimquad.convert(sheet, trimquad.Options(quads=50, write=["pictures", "fcstd"]))
-    assert result.write(str(tmp_path)) == ["map.png", "nurbs.png", "quads.png", "trimquad.FCStd"]
+    pictures = ["map.png", "nurbs.png", "quads.png", "tmesh.png", "tmesh_unfolded.png"]
+    assert result.write(str(tmp_path)) == [*pictures, "trimquad.FCStd"]
     document = FreeCAD.openDocument(str(tmp_path / "trimquad.FCStd"))
     try:
         kinds = sorted(o.TypeId for o in document.Objects)

@@ -19,7 +19,8 @@ struct MapFile {
 int numberUpTo(std::size_t count, std::string_view word, const LineScanner& scanner, const char* what) {
   const long long number = scanner.toInteger(word, what);
   if (number < 1 || number > (long long)(count))
-    scanner.fail(std::string(what) + " is " + std::to_string(number) + ", but there are " + std::to_string(count));
+    scanner.fail(std::string(what) + " is " + std::to_string(number) + ", but there are " +
+                 std::to_string(count));
   return int(number) - 1;
 }
 
@@ -77,7 +78,8 @@ Parametrization readMapObj(const std::string& name, const std::string& text) {
   for (const auto& x : file.images) {
     images.push_back(map.scale.round(x));
     if (map.scale.toQuads(images.back()) != x)
-      throw inputError("read", "a coordinate of the map is no multiple of its scale, so its seams cannot be exact",
+      throw inputError("read",
+                       "a coordinate of the map is no multiple of its scale, so its seams cannot be exact",
                        name + ", vt " + std::to_string(images.size()));
   }
   map.corner.resize(map.mesh.n_halfedges());

@@ -147,6 +147,32 @@ LengthBounds boundsOfSeparation(const Dual& dual, const SeparationTest& separati
   return bounds;
 }
 
+namespace {
+
+/// The flow `q` within `bounds`, improved by dropping bounds that turn out not to be needed for separation,
+/// one by one.
+ArcLengths withoutNeedlessBounds(const Dual& dual, const Objective& objective,
+                                 const SeparationTest& separation, LengthBounds bounds, ArcLengths q,
+                                 const Progress& progress) {
+  double least = objective(q);
+  for (std::size_t a = 0; a < q.size(); ++a) {
+    if (bounds.least[a] == 0 || q[a] > bounds.least[a] || separation.mustNotVanish({int(a)})) continue;
+    progress.check();
+    LengthBounds fewer = bounds;
+    fewer.least[a] = 0;
+    const auto flow = leastDeviation(dual, objective, fewer, q);
+    if (!flow || flow->objective > least - 1e-9) continue;
+    ArcLengths shorter;
+    bool isWhole = true;
+    for (const int twice : flow->twice) shorter.push_back(twice / 2), isWhole = isWhole && twice % 2 == 0;
+    if (!isWhole || separation.fault(shorter)) continue;
+    bounds = std::move(fewer), q = std::move(shorter), least = objective(q);
+  }
+  return q;
+}
+
+}  // namespace
+
 std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective,
                                         const SeparationTest& separation, const ArcLengths& start,
                                         const Progress& progress) {
@@ -166,7 +192,7 @@ std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objec
     }
     if (!isWhole) continue;
     const auto faults = separation.faults(q);
-    if (faults.empty()) return q;
+    if (faults.empty()) return withoutNeedlessBounds(dual, objective, separation, bounds, q, progress);
     bool canChange = false;
     for (const Collapse& fault : faults) {
       std::optional<ArcId> longest;

@@ -197,7 +197,7 @@ TEST(Quantize, theProvenOptimumIsTheOptimum) {
   const Progress progress;
   int proven = 0;
   double greedy = 0, optimal = 0;
-  for (unsigned seed = 0; seed < 700 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed, true);
     const TMesh tmesh = partition(map, progress);
@@ -205,8 +205,7 @@ TEST(Quantize, theProvenOptimumIsTheOptimum) {
     QuantizationOptions options;
     options.optimal = true;
     const Quantization best = quantize(tmesh, options, progress);
-    ASSERT_TRUE(best.lowerBound);
-    EXPECT_LE(*best.lowerBound, best.objective + 1e-9);
+    EXPECT_LE(best.lowerBound, best.objective + 1e-9);
     const Quantization fast = quantize(tmesh, {}, progress);
     EXPECT_GE(fast.objective, best.objective - 1e-9);
     if (best.method != "optimal" || best.objective > 4) continue;
@@ -217,7 +216,7 @@ TEST(Quantize, theProvenOptimumIsTheOptimum) {
                          SeparationTest(dual, Separation::Free), best.objective + 1e-3);
     EXPECT_NEAR(all.best(), best.objective, 1e-4);
   }
-  EXPECT_GT(proven, 40);
+  EXPECT_GT(proven, 20);
   RecordProperty("greedy", std::to_string(greedy));
   RecordProperty("optimal", std::to_string(optimal));
 }
