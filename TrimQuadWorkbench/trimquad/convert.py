@@ -231,6 +231,12 @@ def _map_regions(result, progress):
     with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
         for done in [pool.submit(_map_region, r, result, progress) for r in result.regions]:
             done.result()
+    for item in result.regions:
+        given_up = item.field and item.region.features["aligned_edges"] - item.field.aligned_edges
+        if given_up:
+            result.warnings.append(
+                f"region '{item.name}': {given_up} aligned edges meet others at too sharp an angle to be followed as well"
+            )
 
 
 def _map_region(item, result, progress):

@@ -51,7 +51,7 @@ def _region_report(result, index, item, seconds):
             "boundary_loops": item.region.boundary_loops,
             "euler": item.region.euler,
         },
-        "features": item.region.features,
+        "features": {**item.region.features, "followed_edges": item.field and item.field.aligned_edges},
         "singularities": item.field and _singularities(item.field),
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
         "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
