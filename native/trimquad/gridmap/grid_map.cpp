@@ -18,7 +18,8 @@ GridMap gridMap(const SeamlessMap& seamless, const Progress& progress) {
     return map;
   }
   if (!seamless.seams.tube)
-    throw stageError("optimize", "the region needs irregular vertices, whose places this version does not round yet");
+    throw stageError("optimize",
+                     "the region needs irregular vertices, whose places this version does not round yet");
   std::vector<BranchTranslation> translations(seamless.seams.rotation.size());
   std::vector<char> known(translations.size(), 0);
   for (const auto h : seamless.mesh.halfedges()) {
@@ -35,8 +36,7 @@ GridMap gridMap(const SeamlessMap& seamless, const Progress& progress) {
   const SeamBasis basis(seamless.mesh, seamless.seams, translations, seamless.alignedSides);
   map.counters = {};
   const Eigen::VectorXd z = solveMap(seamless.mesh, seamless.seams, seamless.target, seamless.conformalScale,
-                                     seamless.index, basis,
-                                     "optimize", map.counters, progress);
+                                     seamless.index, basis, "optimize", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   return map;
 }

@@ -56,7 +56,7 @@ void expectEmbedding(const Parametrization& map, const TMesh& tmesh, const Embed
 TEST(Embed, randomSurfaces) {
   const Progress progress;
   int operations = 0, zeroArcs = 0;
-  for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 300; seed < 3000 && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed);
     const TMesh tmesh = partition(map, progress);
@@ -72,6 +72,7 @@ TEST(Embed, randomSurfaces) {
     }
     zeroArcs += quantization.zeroArcs;
   }
+  printf("zero %d ops %d\n", zeroArcs, operations);
   EXPECT_GT(zeroArcs, 1000);
   EXPECT_GT(operations, zeroArcs);
 }
