@@ -27,14 +27,15 @@ TRIANGLES_PER_EDGE = 3
 class RegionResult:
     """What became of one region. Stages that were not reached are None; `error` says why.
 
-    name, region (its triangles), guidance (directions from a file), field, seamless, grid, quads, fitted: values of the
-    compiled stages; seconds: stage name -> seconds.
+    name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
+    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds.
     """
 
     def __init__(self, region):
         self.name = region.name
         self.region = region
-        self.guidance = self.field = self.seamless = self.grid = self.quads = self.fitted = self.error = None
+        self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
+        self.grid = self.quads = self.fitted = self.error = None
         self.refits = self.field_edits = 0
         self.seconds = {}
 
@@ -249,7 +250,9 @@ def _map_region(item, result, progress):
         seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.edge_length)
         item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
         item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
-        item.grid = run("optimize", native.grid_map, item.seamless)
+        item.tmesh = run("partition", native.partition, item.seamless)
+        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
+        item.grid = run("optimize", native.grid_map, item.seamless, item.tmesh, item.quantization)
         item.quads = run("extract", native.extract_quads, item.grid, item.region)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
             item.fitted = run(

@@ -89,7 +89,6 @@ class Options:
             (self.fill_holes > 0, "--fill-holes"),
             (self.optimal, "--optimal"),
             (self.route == "reembed", "--route reembed"),
-            ("tmesh" in self.write, "--write tmesh"),
             ("texture" in self.write, "--write texture"),
         ):
             if given:

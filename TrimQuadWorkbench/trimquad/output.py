@@ -8,9 +8,10 @@ import time
 
 from .error import input_error, system_error
 from .native import load
+from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
-    r"(seamless|gridmap|quads)(-\d+)?\.obj|nurbs\.(step|brep)|report\.json|trimquad\.FCStd|(map|quads|nurbs)\.png"
+    r"(seamless|gridmap|quads)(-\d+)?\.obj|tmesh(-\d+)?\.json|nurbs\.(step|brep)|report\.json|trimquad\.FCStd|(map|quads|nurbs)\.png"
 )
 
 
@@ -98,6 +99,12 @@ def _write_result(result, folder, progress):
                     if value is not None:
                         progress.check()
                         folder.write_text(_numbered(kind, index, result), value.to_obj())
+        if "tmesh" in kinds:
+            for index, item in enumerate(result.regions):
+                if item.quantization is not None:
+                    progress.check()
+                    text = tmesh_json(item.tmesh, item.quantization)
+                    folder.write_text(_numbered("tmesh", index, result, "json"), text)
         if "nurbs" in kinds and result.native_shape is not None:
             native.write_step(result.native_shape, folder.scratch("nurbs.step"))
             progress.check()
@@ -118,8 +125,8 @@ def _write_result(result, folder, progress):
         return folder.commit(_stale(folder.path))
 
 
-def _numbered(kind, index, result):
-    return f"{kind}.obj" if len(result.regions) == 1 else f"{kind}-{index}.obj"
+def _numbered(kind, index, result, extension="obj"):
+    return f"{kind}.{extension}" if len(result.regions) == 1 else f"{kind}-{index}.{extension}"
 
 
 def _stale(path):

@@ -2,6 +2,7 @@
 import os
 
 from .native import load
+from .tmesh import tmesh_counts
 
 STAGES = ("tessellate", "field", "seamless", "partition", "quantize", "reembed", "optimize", "extract", "fit", "write")
 
@@ -53,13 +54,22 @@ def _region_report(result, index, item, seconds):
         "features": item.region.features,
         "singularities": item.field and _singularities(item.field),
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
-        "tmesh": None,
-        "quantization": None,
+        "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
+        "quantization": item.quantization and _quantization_report(item.quantization),
         "embedding": None,
         "gridmap": item.grid and {"flipped": 0, **item.grid.counters},
         "quads": item.quads and item.quads.statistics,
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
         "seconds": seconds,
+    }
+
+
+def _quantization_report(quantization):
+    return {
+        "method": quantization.method,
+        "objective": quantization.objective,
+        "lower_bound": quantization.lower_bound,
+        "steps": quantization.steps,
     }
 
 

@@ -12,7 +12,8 @@ void bindGridMap(py::module_& m) {
       .def_property_readonly("arrays", [](const GridMap& map) { return arraysOf(map); })
       .def(
           "to_obj", [](const GridMap& map) { return writeObj(map); }, Released());
-  m.def("grid_map", &gridMap, py::arg("seamless"), py::arg("progress"), Released());
+  m.def("grid_map", &gridMap, py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
+        py::arg("progress"), Released());
 }
 
 }  // namespace trimquad

@@ -54,7 +54,6 @@ def test_an_unusable_option_is_one_line_that_names_it(given, said):
         {"fill_holes": 1.0},
         {"optimal": True},
         {"route": "reembed"},
-        {"write": ["tmesh"]},
         {"write": ["texture"]},
     ],
 )

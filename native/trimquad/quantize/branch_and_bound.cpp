@@ -84,18 +84,30 @@ class Search {
   /// does, ...
   void splitOn(const Branch& branch, const Collapse& collapse, const ArcLengths& q) {
     LengthBounds bounds = branch.bounds;
-    for (const auto* arcs : {&collapse.zeroArcs, &collapse.others})
-      for (const ArcId a : *arcs) {
-        if (bounds.least[a.index] == bounds.most[a.index]) continue;
-        LengthBounds above = bounds;
-        above.least[a.index] = q[a.index] + 1;
-        if (!above.most[a.index] || above.least[a.index] <= *above.most[a.index]) add(std::move(above), q);
-        LengthBounds below = bounds;
-        below.most[a.index] = q[a.index] - 1;
-        if (below.least[a.index] <= *below.most[a.index]) add(std::move(below), q);
-        bounds.least[a.index] = q[a.index];
-        bounds.most[a.index] = q[a.index];
+    splitOnLengths(collapse.zeroArcs, q, bounds);
+    for (const ArcId a : collapse.mightVanish) {
+      if (bounds.least[a.index] == 0) {
+        LengthBounds zero = bounds;
+        zero.most[a.index] = 0;
+        add(std::move(zero), q);
       }
+      bounds.least[a.index] = std::max(bounds.least[a.index], 1);
+    }
+    splitOnLengths(collapse.others, q, bounds);
+  }
+
+  void splitOnLengths(const std::vector<ArcId>& arcs, const ArcLengths& q, LengthBounds& bounds) {
+    for (const ArcId a : arcs) {
+      if (bounds.least[a.index] == bounds.most[a.index]) continue;
+      LengthBounds above = bounds;
+      above.least[a.index] = q[a.index] + 1;
+      if (!above.most[a.index] || above.least[a.index] <= *above.most[a.index]) add(std::move(above), q);
+      LengthBounds below = bounds;
+      below.most[a.index] = q[a.index] - 1;
+      if (below.least[a.index] <= *below.most[a.index]) add(std::move(below), q);
+      bounds.least[a.index] = q[a.index];
+      bounds.most[a.index] = q[a.index];
+    }
   }
 
   const Dual& dual_;

@@ -142,12 +142,14 @@ std::optional<DeviationFlow> leastDeviation(const Dual& dual, const Objective& o
 LengthBounds boundsOfSeparation(const Dual& dual, const SeparationTest& separation) {
   LengthBounds bounds;
   bounds.most.resize(dual.uses.size());
-  for (std::size_t a = 0; a < dual.uses.size(); ++a) bounds.least.push_back(separation.mustNotVanish({int(a)}));
+  for (std::size_t a = 0; a < dual.uses.size(); ++a)
+    bounds.least.push_back(separation.mustNotVanish({int(a)}));
   return bounds;
 }
 
-std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective, const SeparationTest& separation,
-                                        const ArcLengths& start, const Progress& progress) {
+std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective,
+                                        const SeparationTest& separation, const ArcLengths& start,
+                                        const Progress& progress) {
   LengthBounds bounds = boundsOfSeparation(dual, separation);
   ArcLengths q = start;
   for (int round = 0; round < kRepairs; ++round) {

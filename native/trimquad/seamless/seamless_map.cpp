@@ -115,14 +115,16 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   map.conformalScale = conformalScale(mesh, field);
   map.alignedSides = alignedSides(region, map.target);
   map.index = field.index;
-  std::vector<BranchTranslation> translations(map.seams.rotation.size());
+  SeamConstraints constraints;
+  constraints.aligned = map.alignedSides;
   if (map.seams.tube) {
     // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
     // grid wind around the tube like a thread.
     const Eigen::Vector2d around = lengthAlongEnd(mesh, field, map.target);
-    translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
+    constraints.translations.resize(1);
+    constraints.translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
   }
-  const SeamBasis basis(mesh, map.seams, translations, map.alignedSides);
+  const SeamBasis basis(mesh, map.seams, constraints);
   const Eigen::VectorXd z = solveMap(mesh, map.seams, map.target, map.conformalScale, field.index, basis,
                                      "seamless", map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
@@ -132,7 +134,7 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
     const double follow = map.seams.tube ? 0.0 : kFollow;
     map.counters.scaffolded = true;
     map.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
-    const SeamBasis plane(mesh, map.seams, {}, {});
+    const SeamBasis plane(mesh, map.seams, {});
     const Eigen::VectorXd apart =
         oneToOneMap(mesh, map.seams, map.target, plane, follow, map.counters, progress);
     static_cast<Parametrization&>(map) = exactMap(mesh, plane, apart, false);

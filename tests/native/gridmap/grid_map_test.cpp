@@ -9,6 +9,7 @@
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/singularity_free_field.h"
 #include "trimquad/mesh/boundary_image.h"
+#include "trimquad/tmesh/partition.h"
 
 namespace trimquad {
 namespace {
@@ -19,7 +20,9 @@ CrossField fieldOf(const Region& r) {
 
 GridMap mapOf(const Region& r, double edgeLength) {
   const CrossField field = fieldOf(r);
-  return gridMap(seamlessMap(r, field, edgeLength, Progress()), Progress());
+  const SeamlessMap seamless = seamlessMap(r, field, edgeLength, Progress());
+  const TMesh tmesh = partition(seamless, Progress());
+  return gridMap(seamless, tmesh, quantize(tmesh, {}, Progress()), Progress());
 }
 
 /// Translation of the seam that a tube's map has, in quads (as long as it has one).
