@@ -5,6 +5,7 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/gridmap/convex_combination.h"
+#include "trimquad/gridmap/progressive_embedding.h"
 
 namespace trimquad {
 namespace {
@@ -55,15 +56,23 @@ class PatchMaps {
   void map(PatchId id, const PatchDisk& disk) {
     const auto rim = rimPlaces(id);
     TRIMQUAD_ASSERT(rim.size() == disk.rim.size());
-    if (const auto weights = meanValueWeights(shapes(disk)); weights && take(disk, *weights, rim)) {
-      ++result_.meanValue;
+    if (const auto weights = meanValueWeights(shapes(disk)))
+      if (const auto image = convexCombination(disk, *weights, rim); image && take(disk, *image)) {
+        ++result_.meanValue;
+        return;
+      }
+    const auto image = convexCombination(disk, uniformWeights(disk.triangles.size()), rim);
+    if (image && take(disk, *image)) {
+      ++result_.uniform;
       return;
     }
-    if (!take(disk, uniformWeights(disk.triangles.size()), rim))
-      throw stageError("optimize", "the map of a patch does not fit the numbers; use a smaller edge length",
-                       "patch " + std::to_string(id.index),
-                       mesh_.point(mesh_.from_vertex_handle(disk.rim.front())));
-    ++result_.uniform;
+    if (const auto embedding = progressiveEmbedding(disk, rim, scale_); embedding && take(disk, *embedding)) {
+      ++result_.progressive;
+      return;
+    }
+    throw stageError("optimize", "the map of a patch does not fit the numbers; use a smaller edge length",
+                     "patch " + std::to_string(id.index),
+                     mesh_.point(mesh_.from_vertex_handle(disk.rim.front())));
   }
 
   Parametrization assembled() && {
@@ -126,17 +135,22 @@ class PatchMaps {
     return all;
   }
 
-  /// Whether all triangles are positive in quanta; then the map is that of the patch.
-  bool take(const PatchDisk& disk, const EdgeWeights& weights, const std::vector<FixedVector>& rim) {
+  std::optional<std::vector<FixedVector>> convexCombination(const PatchDisk& disk, const EdgeWeights& weights,
+                                                            const std::vector<FixedVector>& rim) const {
     std::vector<Vector2d> rimInQuads;
     for (const FixedVector x : rim) rimInQuads.push_back(scale_.toQuads(x));
     const auto image = convexCombinationMap(disk, weights, rimInQuads);
-    if (!image) return false;
+    if (!image) return {};
     std::vector<FixedVector> exact = rim;
     for (std::size_t i = rim.size(); i < image->size(); ++i) {
-      if (!(*image)[i].allFinite()) return false;
+      if (!(*image)[i].allFinite()) return {};
       exact.push_back(scale_.round((*image)[i]));
     }
+    return exact;
+  }
+
+  /// Whether all triangles are positive; then the map is that of the patch.
+  bool take(const PatchDisk& disk, const std::vector<FixedVector>& exact) {
     for (const auto& t : disk.triangles)
       if (orientation(exact[t[0]], exact[t[1]], exact[t[2]]) <= 0) return false;
     for (std::size_t i = 0; i < disk.faces.size(); ++i) {

@@ -7,10 +7,10 @@ namespace trimquad {
 
 /// A grid map put together from one map per patch, and the mesh that it needs.
 struct PatchMap {
-  EmbeddedTMesh embedded;          ///< its mesh is the map's
-  Parametrization map;             ///< every patch in a chart of its own
-  int splits = 0;                  ///< edges inside patches that joined two points of one side
-  int meanValue = 0, uniform = 0;  ///< patches by the weights of their map
+  EmbeddedTMesh embedded;  ///< its mesh is the map's
+  Parametrization map;     ///< every patch in a chart of its own
+  int splits = 0;          ///< edges inside patches that joined two points of one side
+  int meanValue = 0, uniform = 0, progressive = 0;  ///< patches by how they were mapped
 };
 
 /// Maps every patch one to one onto its rectangle, the arcs between them alike from both sides (paper,
