@@ -61,10 +61,11 @@ void relax(const SurfaceMesh& input, RefinedMesh& refined);
 /// Image of the vertex that `h` leaves in the chart that the input map has for the triangle of `h`, in quads.
 Eigen::Vector2d imageInChart(const Parametrization& map, const RefinedMesh& refined, HalfedgeHandle h);
 
-/// The region with the refined mesh. New vertices on a curve get the parameter between their neighbours'.
-Region refinedRegion(const Region& region, const RefinedMesh& refined);
+/// The region with the refined mesh, everything else carried over. New vertices on the model's curves lie on
+/// them.
+Region refinedRegion(const Region& region, const std::vector<ModelCurve>& curves, const RefinedMesh& refined);
 
-/// Alignments of the input, on the refined mesh: the pieces of its aligned edges, ascending.
+/// The pieces of the given edges of the input, ascending.
 std::vector<EdgeHandle> refinedEdges(const SurfaceMesh& input, const RefinedMesh& refined,
                                      const std::vector<EdgeHandle>& edges);
 

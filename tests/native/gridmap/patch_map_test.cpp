@@ -44,5 +44,4 @@ TEST(PatchMap, randomSurfacesGetValidGridMaps) {
       ADD_FAILURE() << error.what();
     }
   }
-  printf("uniform %d\n", uniform);
 }
