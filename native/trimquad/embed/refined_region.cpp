@@ -1,4 +1,4 @@
-#include <cmath>
+#include <limits>
 
 #include "trimquad/embed/refined_mesh.h"
 
@@ -9,17 +9,23 @@ namespace {
 std::array<double, 2> parametersOfEnds(const Region& region, EdgeHandle e, const TrueCurve& curve) {
   const VertexHandle ends[] = {region.mesh.from_vertex_handle(region.mesh.halfedge_handle(e, 0)),
                                region.mesh.to_vertex_handle(region.mesh.halfedge_handle(e, 0))};
-  const auto isCorner = [&](int k) { return region.corner[ends[k].idx()].has_value(); };
-  const auto parameter = [&](int k) { return region.curveParameter[ends[k].idx()]; };
-  const double first = curve.first(), last = curve.last();
-  if (isCorner(0) && isCorner(1)) {
-    const auto offStart = [&](int k) { return (curve.point(first) - region.mesh.point(ends[k])).norm(); };
-    return offStart(0) <= offStart(1) ? std::array{first, last} : std::array{last, first};
-  }
-  // A corner is the end of the curve that is nearer to the vertex beside it.
-  const auto nearerEnd = [&](double t) { return std::abs(t - first) <= std::abs(last - t) ? first : last; };
-  return {isCorner(0) ? nearerEnd(parameter(1)) : parameter(0),
-          isCorner(1) ? nearerEnd(parameter(0)) : parameter(1)};
+  // A corner is the start or the end of the curve, or both: the edge's middle tells.
+  std::array<std::vector<double>, 2> choices;
+  for (const int k : {0, 1})
+    if (region.corner[ends[k].idx()])
+      choices[k] = {curve.first(), curve.last()};
+    else
+      choices[k] = {region.curveParameter[ends[k].idx()]};
+  const Eigen::Vector3d a = region.mesh.point(ends[0]), b = region.mesh.point(ends[1]);
+  std::array<double, 2> best{};
+  double least = std::numeric_limits<double>::infinity();
+  for (const double s : choices[0])
+    for (const double t : choices[1]) {
+      const double off = (curve.point(s) - a).norm() + (curve.point(t) - b).norm() +
+                         (curve.point(0.5 * (s + t)) - 0.5 * (a + b)).norm();
+      if (off < least) least = off, best = {s, t};
+    }
+  return best;
 }
 
 }  // namespace
