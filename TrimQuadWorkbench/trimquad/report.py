@@ -56,7 +56,7 @@ def _region_report(result, index, item, seconds):
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
         "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
         "quantization": item.quantization and _quantization_report(item.quantization),
-        "embedding": None,
+        "embedding": item.embedding,
         "gridmap": item.grid and {"flipped": 0, **item.grid.counters},
         "quads": item.quads and item.quads.statistics,
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
