@@ -11,7 +11,8 @@ from .native import load
 from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
-    r"(seamless|gridmap|quads)(-\d+)?\.obj|tmesh(-\d+)?\.json|nurbs\.(step|brep)|report\.json|trimquad\.FCStd|(map|quads|nurbs|tmesh|tmesh_unfolded)\.png"
+    r"(seamless|gridmap|quads|texture)(-\d+)?\.obj|tmesh(-\d+)?\.json|texture\.(mtl|png)|nurbs\.(step|brep)"
+    r"|report\.json|trimquad\.FCStd|(map|quads|nurbs|tmesh|tmesh_unfolded)\.png"
 )
 
 
@@ -105,6 +106,8 @@ def _write_result(result, folder, progress):
                     progress.check()
                     text = tmesh_json(item.tmesh, item.quantization)
                     folder.write_text(_numbered("tmesh", index, result, "json"), text)
+        if "texture" in kinds:
+            _write_texture(result, folder, progress)
         if "nurbs" in kinds and result.native_shape is not None:
             native.write_step(result.native_shape, folder.scratch("nurbs.step"))
             progress.check()
@@ -123,6 +126,18 @@ def _write_result(result, folder, progress):
             folder.write_text("report.json", json.dumps(result.report, indent=1) + "\n")
         progress.check()
         return folder.commit(_stale(folder.path))
+
+
+def _write_texture(result, folder, progress):
+    from .texture import IMAGE, MATERIAL, material, textured_obj, write_image
+
+    mapped = [(index, item.grid) for index, item in enumerate(result.regions) if item.grid is not None]
+    for index, grid in mapped:
+        progress.check()
+        folder.write_text(_numbered("texture", index, result), textured_obj(grid.to_obj()))
+    if mapped:
+        folder.write_text(MATERIAL, material())
+        write_image(folder.scratch(IMAGE))
 
 
 def _numbered(kind, index, result, extension="obj"):
