@@ -70,6 +70,8 @@ class Options:
             if getattr(self, name) not in known:
                 names = ", ".join(x for x in known if x)
                 raise _refused(name, f"must be one of {names}, not '{getattr(self, name)}'")
+        if not isinstance(self.optimal, bool):
+            raise _refused("optimal", f"is on or off, not {self.optimal}")
         for kind in self.write:
             if kind not in FILE_KINDS:
                 raise _refused("write", f"knows {', '.join(FILE_KINDS)}, not '{kind}'")
@@ -87,10 +89,7 @@ class Options:
         for given, what in (
             (self.field == "stress", "--field stress"),
             (self.fill_holes > 0, "--fill-holes"),
-            (self.optimal, "--optimal"),
             (self.route == "reembed", "--route reembed"),
-            ("tmesh" in self.write, "--write tmesh"),
-            ("texture" in self.write, "--write texture"),
         ):
             if given:
                 raise input_error("options", f"{what} is not in this version yet; leave it out")

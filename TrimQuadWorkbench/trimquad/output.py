@@ -8,9 +8,11 @@ import time
 
 from .error import input_error, system_error
 from .native import load
+from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
-    r"(seamless|gridmap|quads)(-\d+)?\.obj|nurbs\.(step|brep)|report\.json|trimquad\.FCStd|(map|quads|nurbs)\.png"
+    r"(seamless|gridmap|quads|texture)(-\d+)?\.obj|tmesh(-\d+)?\.json|texture\.(mtl|png)|nurbs\.(step|brep)"
+    r"|report\.json|trimquad\.FCStd|(map|quads|nurbs|tmesh|tmesh_unfolded)\.png"
 )
 
 
@@ -98,6 +100,14 @@ def _write_result(result, folder, progress):
                     if value is not None:
                         progress.check()
                         folder.write_text(_numbered(kind, index, result), value.to_obj())
+        if "tmesh" in kinds:
+            for index, item in enumerate(result.regions):
+                if item.quantization is not None:
+                    progress.check()
+                    text = tmesh_json(item.tmesh, item.quantization)
+                    folder.write_text(_numbered("tmesh", index, result, "json"), text)
+        if "texture" in kinds:
+            _write_texture(result, folder, progress)
         if "nurbs" in kinds and result.native_shape is not None:
             native.write_step(result.native_shape, folder.scratch("nurbs.step"))
             progress.check()
@@ -118,8 +128,20 @@ def _write_result(result, folder, progress):
         return folder.commit(_stale(folder.path))
 
 
-def _numbered(kind, index, result):
-    return f"{kind}.obj" if len(result.regions) == 1 else f"{kind}-{index}.obj"
+def _write_texture(result, folder, progress):
+    from .texture import IMAGE, MATERIAL, material, textured_obj, write_image
+
+    mapped = [(index, item.grid) for index, item in enumerate(result.regions) if item.grid is not None]
+    for index, grid in mapped:
+        progress.check()
+        folder.write_text(_numbered("texture", index, result), textured_obj(grid.to_obj()))
+    if mapped:
+        folder.write_text(MATERIAL, material())
+        write_image(folder.scratch(IMAGE))
+
+
+def _numbered(kind, index, result, extension="obj"):
+    return f"{kind}.{extension}" if len(result.regions) == 1 else f"{kind}-{index}.{extension}"
 
 
 def _stale(path):

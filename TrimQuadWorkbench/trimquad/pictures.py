@@ -5,6 +5,7 @@ from .colours import point_colour
 from .error import input_error
 from .freecad_shape import shape_from_bytes
 from .native import load
+from .tmesh_layout import arc_courses, arc_lines, critical_points, layout_of_patches
 
 SIZE = (9.0, 6.75)  # inches, at 100 dots an inch
 CHECKS = (numpy.array([0.93, 0.93, 0.90]), numpy.array([0.33, 0.52, 0.74]))
@@ -20,7 +21,7 @@ LIGHT = numpy.array([0.35, -0.45, 0.82])
 
 
 def write_pictures(result, path_of, progress):
-    """Write map.png, quads.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
+    """Write map.png, tmesh.png, tmesh_unfolded.png, quads.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
     try:
         import matplotlib
 
@@ -32,6 +33,10 @@ def write_pictures(result, path_of, progress):
         checkers = [_checker(r.map.points[r.map.triangles], r.map.uv) for r in mapped]
         aligned = [(r.region.points[r.region.aligned], 1.6, ALIGNED_COLOUR) for r in mapped]
         _save(path_of("map.png"), checkers, aligned, [s for r in mapped for s in r.singularities])
+    progress.check()
+    partitioned = [r for r in result.regions if r.quantization is not None]
+    if partitioned:
+        _save_tmeshes(partitioned, path_of)
     progress.check()
     polygons = [r.polygons for r in result.regions if r.quads is not None]
     if polygons:
@@ -88,11 +93,54 @@ def _faces(result):
     return faces, lines
 
 
-def _save(path, surfaces, lines, singularities=()):
-    """Paint triangles from back to front in a fixed oblique view, and what they do not hide of the lines and points."""
+def _save_tmeshes(items, path_of):
+    """tmesh.png: arcs on the surfaces; tmesh_unfolded.png: completed patches as rectangles side by side."""
+    surfaces, lines = [], []
+    for item in items:
+        points, triangles, _ = item.seamless.arrays
+        surfaces.append((points[triangles], numpy.tile(QUAD_COLOUR, (len(triangles), 1))))
+        lines += arc_lines(item, arc_courses(item))
+    _save(path_of("tmesh.png"), surfaces, lines, [s for r in items for s in r.singularities])
+    drawing, axes = _drawing()
+    offset = 0.0
+    for item in items:
+        arcs, nodes = layout_of_patches(item.tmesh)
+        corners = numpy.concatenate(arcs).reshape(-1, 2)
+        shift = numpy.array([offset - corners[:, 0].min(), 0.0])
+        offset += 1.1 * numpy.ptp(corners[:, 0]) + 1
+        for line in arc_lines(item, [a + shift for a in arcs]):
+            _add_line(axes, *line)
+        for place, colour in critical_points(item, nodes):
+            axes.plot(*(place + shift), "o", color=colour, markersize=5, zorder=3)
+    _finish(drawing, axes, path_of("tmesh_unfolded.png"))
+
+
+def _drawing():
     from matplotlib import figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.collections import LineCollection, PolyCollection
+
+    drawing = figure.Figure(figsize=SIZE, dpi=100)
+    FigureCanvasAgg(drawing)
+    axes = drawing.add_axes([0.02, 0.02, 0.96, 0.96])
+    axes.set_aspect("equal")
+    axes.axis("off")
+    return drawing, axes
+
+
+def _add_line(axes, segments, width, colour, style="solid"):
+    from matplotlib.collections import LineCollection
+
+    axes.add_collection(LineCollection(segments, colors=colour, linewidths=width, linestyles=style))
+
+
+def _finish(drawing, axes, path):
+    axes.autoscale_view()
+    drawing.savefig(path, metadata={"Software": None})
+
+
+def _save(path, surfaces, lines, singularities=()):
+    """Paint triangles from back to front in a fixed oblique view, and what they do not hide of the lines and points."""
+    from matplotlib.collections import PolyCollection
 
     triangles = numpy.concatenate([s[0] for s in surfaces])
     colours = numpy.concatenate([s[1] for s in surfaces])
@@ -102,25 +150,20 @@ def _save(path, surfaces, lines, singularities=()):
     flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
     order = numpy.argsort(depth, kind="stable")
     shaded = numpy.clip(colours * _shade(triangles, view)[:, None], 0, 1)
-    drawing = figure.Figure(figsize=SIZE, dpi=100)
-    FigureCanvasAgg(drawing)
-    axes = drawing.add_axes([0.02, 0.02, 0.96, 0.96])
-    axes.set_aspect("equal")
-    axes.axis("off")
+    drawing, axes = _drawing()
     axes.add_collection(
         PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
     )
-    for segments, width, colour in lines:
+    for segments, *how in lines:
         seen = _visible(segments.mean(axis=1), triangles, view)
-        axes.add_collection(LineCollection((segments @ view[:, :2])[seen], colors=colour, linewidths=width))
+        _add_line(axes, (segments @ view[:, :2])[seen], *how)
     if singularities:
         places = numpy.array([s.position for s in singularities])
         colours = numpy.array([point_colour(s.index) for s in singularities])
         seen = _visible(places, triangles, view)
         x, y = (places @ view[:, :2])[seen].T
         axes.scatter(x, y, s=26, c=colours[seen], edgecolors="white", linewidths=0.6, zorder=3)
-    axes.autoscale_view()
-    drawing.savefig(path, metadata={"Software": None})
+    _finish(drawing, axes, path)
 
 
 def _view_axes(triangles):

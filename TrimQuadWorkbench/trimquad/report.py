@@ -2,6 +2,7 @@
 import os
 
 from .native import load
+from .tmesh import tmesh_counts
 
 STAGES = ("tessellate", "field", "seamless", "partition", "quantize", "reembed", "optimize", "extract", "fit", "write")
 
@@ -50,16 +51,25 @@ def _region_report(result, index, item, seconds):
             "boundary_loops": item.region.boundary_loops,
             "euler": item.region.euler,
         },
-        "features": item.region.features,
+        "features": {**item.region.features, "followed_edges": item.field and item.field.aligned_edges},
         "singularities": item.field and _singularities(item.field),
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
-        "tmesh": None,
-        "quantization": None,
-        "embedding": None,
+        "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
+        "quantization": item.quantization and _quantization_report(item.quantization),
+        "embedding": item.embedding,
         "gridmap": item.grid and {"flipped": 0, **item.grid.counters},
         "quads": item.quads and item.quads.statistics,
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
         "seconds": seconds,
+    }
+
+
+def _quantization_report(quantization):
+    return {
+        "method": quantization.method,
+        "objective": quantization.objective,
+        "lower_bound": quantization.lower_bound,
+        "steps": quantization.steps,
     }
 
 

@@ -5,6 +5,7 @@
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/singularity_free_field.h"
 #include "trimquad/gridmap/grid_map.h"
+#include "trimquad/tmesh/partition.h"
 
 using namespace trimquad;
 
@@ -52,7 +53,7 @@ void seamless(benchmark::State& state) {
   const Region region = sheetOrTube(int(state.range(0)), state.range(1) != 0);
   const CrossField directions = fieldOf(region);
   for (auto _ : state)
-    benchmark::DoNotOptimize(seamlessMap(region, directions, edgeLengthOf(region), Progress()));
+    benchmark::DoNotOptimize(seamlessMap(region, directions, edgeLengthOf(region), Effort::Full, Progress()));
   state.counters["triangles"] = double(region.mesh.n_faces());
   state.SetComplexityN(std::int64_t(region.mesh.n_faces()));
 }
@@ -60,8 +61,10 @@ void seamless(benchmark::State& state) {
 void optimize(benchmark::State& state) {
   const Region region = sheetOrTube(int(state.range(0)), state.range(1) != 0);
   const SeamlessMap map =
-      seamlessMap(region, fieldOf(region), edgeLengthOf(region), Progress());
-  for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, Progress()));
+      seamlessMap(region, fieldOf(region), edgeLengthOf(region), Effort::Full, Progress());
+  const TMesh tmesh = partition(map, Progress());
+  const Quantization quantization = quantize(tmesh, {}, Progress());
+  for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, tmesh, quantization, Progress()));
   state.counters["triangles"] = double(region.mesh.n_faces());
   state.SetComplexityN(std::int64_t(region.mesh.n_faces()));
 }

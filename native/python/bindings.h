@@ -21,6 +21,8 @@ void bindMesh(pybind11::module_& m);
 void bindBrep(pybind11::module_& m);
 void bindField(pybind11::module_& m);
 void bindSeamless(pybind11::module_& m);
+void bindTMesh(pybind11::module_& m);
+void bindQuantize(pybind11::module_& m);
 void bindGridMap(pybind11::module_& m);
 void bindQuads(pybind11::module_& m);
 void bindSpline(pybind11::module_& m);

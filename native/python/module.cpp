@@ -13,6 +13,8 @@ PYBIND11_MODULE(_native, m) {
   trimquad::bindBrep(m);
   trimquad::bindField(m);
   trimquad::bindSeamless(m);
+  trimquad::bindTMesh(m);
+  trimquad::bindQuantize(m);
   trimquad::bindGridMap(m);
   trimquad::bindQuads(m);
   trimquad::bindSpline(m);

@@ -12,8 +12,9 @@ namespace trimquad {
 py::dict countersOf(const MapCounters& counters) {
   py::dict all;
   all["flipped_before"] = counters.flippedBefore;
+  all["path_steps"] = counters.pathSteps;
   all["untangle_iterations"] = counters.untangleIterations;
-  all["conformal_start"] = counters.conformalStart;
+  all["start"] = counters.start;
   all["convex_start"] = counters.convexStart;
   all["scaffolded"] = counters.scaffolded;
   all["iterations"] = counters.iterations;

@@ -2,6 +2,7 @@
 import json
 import os
 
+import numpy
 import pytest
 from conftest import wavy_face
 
@@ -98,32 +99,41 @@ def test_progress_only_rises_and_ends_at_one(sheet, tmp_path):
 
 
 def test_a_region_that_fails_does_not_stop_the_others(tmp_path, capsys):
-    """A sphere needs singularities; a sheet beside it does not."""
-    import FreeCAD
-    import Part
-
+    """A crumpled plate is too rough for one smooth surface within the tolerance; a flat one beside it is not."""
     from trimquad import cli
 
-    both = Part.makeCompound([wavy_face(), Part.makeSphere(10, FreeCAD.Vector(200, 0, 0))])
-    path = tmp_path / "both.brep"
-    both.exportBrep(str(path))
-    status = cli.main(["convert", str(path), "--out", str(tmp_path / "out"), "--quads", "300", "--quiet"])
+    seed = 7
+    random = numpy.random.default_rng(seed)
+    places = [(i, j) for i in range(7) for j in range(7)]
+    crumpled = [(i, j, random.uniform(-0.7, 0.7)) for i, j in places]
+    flat = [(i + 20, j, 0) for i, j in places]
+    cells = [7 * i + j for i in range(6) for j in range(6)]
+    triangles = [t for a in cells for t in ((a, a + 7, a + 8), (a, a + 8, a + 1))]
+    path = tmp_path / "both.obj"
+    lines = [f"v {x} {y} {z}" for x, y, z in crumpled + flat]
+    lines += [f"f {a + 1 + n} {b + 1 + n} {c + 1 + n}" for n in (0, 49) for a, b, c in triangles]
+    path.write_text("\n".join(lines) + "\n")
+    status = cli.main(["convert", str(path), "--out", str(tmp_path / "out"), "--quads", "60", "--features", "ignore",
+                       "--relative-tolerance", "1e-5", "--quiet"])
     lines = capsys.readouterr().err.splitlines()
     report = json.loads((tmp_path / "out" / "report.json").read_text())
-    assert status == 3
+    assert status == 3, seed
     assert len(lines) == 1 and "1 of 2 regions failed" in lines[0]
-    assert sorted(r["status"] for r in report["regions"]) == ["failed", "ok"]
-    failed = next(r for r in report["regions"] if r["status"] == "failed")
-    assert failed["error"]["stage"] and failed["error"]["message"]
-    names = os.listdir(tmp_path / "out")
-    assert "nurbs.step" in names and sum(n.startswith("quads") for n in names) == 1
+    assert [r["status"] for r in report["regions"]] == ["failed", "ok"]
+    failed, through = report["regions"]
+    assert failed["error"]["stage"] == "fit" and "tolerance" in failed["error"]["message"]
+    assert failed["nurbs"] is None and through["nurbs"]["faces"] == 1
+    # What came before the failure is written all the same.
+    names = set(os.listdir(tmp_path / "out"))
+    assert names == {"gridmap-0.obj", "gridmap-1.obj", "quads-0.obj", "quads-1.obj", "nurbs.step", "nurbs.brep", "report.json"}
 
 
 def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
     import FreeCAD
 
     result = trimquad.convert(sheet, trimquad.Options(quads=50, write=["pictures", "fcstd"]))
-    assert result.write(str(tmp_path)) == ["map.png", "nurbs.png", "quads.png", "trimquad.FCStd"]
+    pictures = ["map.png", "nurbs.png", "quads.png", "tmesh.png", "tmesh_unfolded.png"]
+    assert result.write(str(tmp_path)) == [*pictures, "trimquad.FCStd"]
     document = FreeCAD.openDocument(str(tmp_path / "trimquad.FCStd"))
     try:
         kinds = sorted(o.TypeId for o in document.Objects)

@@ -1,43 +1,61 @@
 #include "trimquad/gridmap/grid_map.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "trimquad/base/error.h"
+#include "trimquad/gridmap/node_relations.h"
 #include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
+namespace {
 
-GridMap gridMap(const SeamlessMap& seamless, const Progress& progress) {
+/// The images of the triangles: the map itself as a target.
+MapTarget imageOf(const Parametrization& map) {
+  MapTarget image(map.mesh.n_faces());
+  for (const auto f : map.mesh.faces()) {
+    auto h = map.mesh.halfedge_handle(f);
+    for (int k = 0; k < 3; ++k, h = map.mesh.next_halfedge_handle(h))
+      image[f.idx()][k] = map.scale.toQuads(map.from(h));
+  }
+  return image;
+}
+
+/// The seamless map in the coordinates of the basis, the grid points left at the origin.
+Eigen::VectorXd coordinatesOf(const SeamlessMap& map, const SeamBasis& basis) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(basis.basis().variableCount());
+  for (const auto h : map.mesh.halfedges()) {
+    if (map.mesh.is_boundary(h)) continue;
+    const Eigen::Vector2d corner = map.scale.toQuads(map.from(h));
+    for (int axis = 0; axis < 2; ++axis) x[basis.coordinate(basis.wedge(h), axis)] = corner[axis];
+    const auto& crossing = map.seams.crossing[h.idx()];
+    if (!crossing || !crossing->forward) continue;
+    const Eigen::Vector2d translation = map.scale.toQuads(map.transition(h).translation);
+    for (int axis = 0; axis < 2; ++axis) x[basis.translation(crossing->branch, axis)] = translation[axis];
+  }
+  return x;
+}
+
+}  // namespace
+
+GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
+                const Progress& progress) {
   GridMap map;
-  map.counters = seamless.counters;
-  if (seamless.seams.rotation.empty()) {
-    // Without seams nothing is bound to integers: the seamless map is a grid map.
+  if (seamless.seams.rotation.empty() && seamless.aligned.empty() && seamless.featurePoints.empty()) {
+    // Nothing is bound to integers: the seamless map is a grid map.
+    map.counters = seamless.counters;
     static_cast<Parametrization&>(map) = seamless;
     verify(map, true);
     return map;
   }
-  if (!seamless.seams.tube)
-    throw stageError("optimize", "the region needs irregular vertices, whose places this version does not round yet");
-  std::vector<BranchTranslation> translations(seamless.seams.rotation.size());
-  std::vector<char> known(translations.size(), 0);
-  for (const auto h : seamless.mesh.halfedges()) {
-    const auto& crossing = seamless.seams.crossing[h.idx()];
-    if (!crossing || !crossing->forward || known[crossing->branch]) continue;
-    known[crossing->branch] = 1;
-    const Eigen::Vector2d t = seamless.scale.toQuads(seamless.transition(h).translation);
-    for (int axis = 0; axis < 2; ++axis) {
-      int whole = int(std::lround(t[axis]));
-      if (whole == 0 && t[axis] != 0) whole = t[axis] > 0 ? 1 : -1;
-      translations[crossing->branch][axis] = whole;
-    }
-  }
-  const SeamBasis basis(seamless.mesh, seamless.seams, translations, seamless.alignedSides);
-  map.counters = {};
-  const Eigen::VectorXd z = solveMap(seamless.mesh, seamless.seams, seamless.target, seamless.conformalScale,
-                                     seamless.index, basis,
-                                     "optimize", map.counters, progress);
+  SeamConstraints constraints;
+  constraints.aligned = seamless.alignedSides;
+  constraints.grid = gridPoints(seamless.mesh, seamless.seams, tmesh, quantization);
+  const SeamBasis basis(seamless.mesh, seamless.seams, constraints);
+  const Eigen::VectorXd z =
+      solveMap(seamless.mesh, seamless.seams, seamless.target,
+               {imageOf(seamless), seamless.target, seamless.conformalTarget}, coordinatesOf(seamless, basis),
+               seamless.index, basis, "optimize", Effort::Full, map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
+  map.aligned = seamless.aligned;
+  map.featurePoints = seamless.featurePoints;
+  verify(map, true);
   return map;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "trimquad/base/progress.h"
+#include "trimquad/quantize/quantize.h"
 #include "trimquad/seamless/seamless_map.h"
+#include "trimquad/tmesh/tmesh.h"
 
 namespace trimquad {
 
@@ -11,9 +13,11 @@ struct GridMap : Parametrization {
   MapCounters counters;
 };
 
-/// The grid map nearest to a seamless map: its periods are rounded to whole quads (one at least), the map is
-/// solved for again with these fixed, and optimised. Guarantees: every triangle has positive area, all
+/// The grid map nearest to a seamless map among those whose T-mesh has the quantized lengths, by the direct
+/// route: the quantization fixes translations, singular vertices, aligned lines and feature points to whole
+/// quads, and the map is solved for again with these fixed. Guarantees: every triangle has positive area, all
 /// conditions of a grid map hold exactly. Throws Error(Stage, "optimize") where no valid map was found.
-GridMap gridMap(const SeamlessMap& seamless, const Progress& progress);
+GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
+                const Progress& progress);
 
 }  // namespace trimquad

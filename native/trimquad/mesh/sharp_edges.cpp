@@ -23,6 +23,7 @@ constexpr double kAround =
     0.8;  ///< share of the edges around that are not on sharp curves where there are any
 constexpr double kWideFacet = 0.5;  ///< quad edges: triangles that high are shape, not sampling
 constexpr double kOpenEnd = 2;      ///< curves that end openly must be so many times longer
+constexpr int kBridge = 2;          ///< edges
 constexpr int kRings = 2;           ///< how many edges around an edge its surroundings reach
 constexpr double kRounding = 1e-9;  ///< radians
 
@@ -70,9 +71,13 @@ class SharpCurves {
   void dropFaint() {
     std::vector<bool> standsOut = sharp_;
     for (const auto e : mesh_.edges())
-      if (sharp_[e.idx()] && std::abs(fold_[e.idx()]) <= kSharpAnywhere && !betweenWideFacets(e))
-        standsOut[e.idx()] = std::abs(fold_[e.idx()]) >= kContrast * foldAround(e);
+      if (sharp_[e.idx()]) standsOut[e.idx()] = isProminent(e);
     sharp_ = std::move(standsOut);
+  }
+
+  bool isProminent(EdgeHandle e) const {
+    const double fold = std::abs(fold_[e.idx()]);
+    return fold > kSharpAnywhere || betweenWideFacets(e) || fold >= kContrast * foldAround(e);
   }
 
   bool betweenWideFacets(EdgeHandle e) const {
@@ -110,20 +115,32 @@ class SharpCurves {
     for (const auto v : mesh_.vertices())
       if (const auto out = sharpFrom(v); out.size() == 1)
         ends.push_back(mesh_.opposite_halfedge_handle(out[0]));
-    for (auto arriving : ends)
-      while (const auto further = straightOn(arriving)) {
-        sharp_[mesh_.edge_handle(*further).idx()] = true;
-        arriving = *further;
+    for (const auto end : ends)
+      if (sharpFrom(mesh_.to_vertex_handle(end)).size() == 1) follow(end);
+  }
+
+  /// Goes on over edges that stand out, and over up to kBridge others if one that does, or another curve,
+  /// comes after them: where curves meet, none stands out of the others.
+  void follow(HalfedgeHandle arriving) {
+    std::vector<EdgeHandle> pending;
+    while (const auto further = straightOn(arriving)) {
+      const EdgeHandle e = mesh_.edge_handle(*further);
+      pending.push_back(e);
+      arriving = *further;
+      const bool reached = !sharpFrom(mesh_.to_vertex_handle(arriving)).empty();
+      if (reached || !(options_.quadLength > 0) || isProminent(e)) {
+        for (const auto taken : pending) sharp_[taken.idx()] = true;
+        pending.clear();
       }
+      if (reached || int(pending.size()) > kBridge) return;
+    }
   }
 
   std::optional<HalfedgeHandle> straightOn(HalfedgeHandle arriving) const {
-    const VertexHandle v = mesh_.to_vertex_handle(arriving);
-    if (sharpFrom(v).size() != 1) return {};
     std::optional<HalfedgeHandle> best;
-    for (const auto h : mesh_.voh_range(v)) {
-      if (isSharp(h) || !sameSide(h, arriving) || std::abs(fold(h)) <= kBlunt * options_.angle) continue;
-      if (turn(mesh_, arriving, h) > kStraightOn) continue;
+    for (const auto h : mesh_.voh_range(mesh_.to_vertex_handle(arriving))) {
+      if (isSharp(h) || h == mesh_.opposite_halfedge_handle(arriving) || !sameSide(h, arriving)) continue;
+      if (std::abs(fold(h)) <= kBlunt * options_.angle || turn(mesh_, arriving, h) > kStraightOn) continue;
       if (!best || std::abs(fold(h)) > std::abs(fold(*best))) best = h;
     }
     return best;

@@ -29,7 +29,8 @@ double foldAngle(const SurfaceMesh& mesh, EdgeHandle e);
 /// the quads:
 /// - a curve starts at edges over `angle` that stand out: twice as sharp as four in five of the edges around,
 ///   over 60 degrees, or between facets half as wide as a quad;
-/// - it follows its direction over blunter edges (hysteresis);
+/// - it follows its direction over blunter edges that stand out, and a few that do not on the way to others
+///   (hysteresis);
 /// - edges are one curve where they meet and bend to the same side, ridge or valley, without a kink of more
 ///   than 60 degrees or where nothing else meets;
 /// - a curve shorter than `shortest`, or twice that where it ends on the open surface, goes, unless all its

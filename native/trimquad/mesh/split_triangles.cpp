@@ -1,6 +1,7 @@
 #include "trimquad/mesh/split_triangles.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace trimquad {
 namespace {
@@ -8,9 +9,19 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSamePlace = 1e-6;  ///< barycentric
-/// How far the surface may be from the middle of what is split, in edge lengths, for the new vertex to lie on
-/// it.
-constexpr double kOffMiddle = 0.35;
+/// A new vertex lies on the true surface if that leaves this share of the smallest area that the middle would
+/// give.
+constexpr double kLeastPart = 0.3;
+
+/// The smallest area, as seen along `normal`, of the triangles between `point` and a ring around it.
+double smallestPart(const Vector3d& point, const Vector3d& normal, const std::vector<Vector3d>& ring) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector3d &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    smallest = std::min(smallest, (a - point).cross(b - point).dot(normal));
+  }
+  return smallest;
+}
 
 bool hasCorner(const SurfaceMesh& mesh, FaceHandle f, VertexHandle v) {
   for (const auto corner : mesh.fv_range(f))
@@ -40,11 +51,16 @@ class ConstraintSplit {
     }
     for (const auto e : between) {
       const auto h = mesh.halfedge_handle(e, 0);
+      const VertexHandle a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
+      const auto apex = [&](HalfedgeHandle side) {
+        return mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(side)));
+      };
       const Vector3d normal =
           mesh.calc_face_normal(mesh.face_handle(h)) + mesh.calc_face_normal(mesh.opposite_face_handle(h));
-      const Vector3d middle =
-          0.5 * (mesh.point(mesh.from_vertex_handle(h)) + mesh.point(mesh.to_vertex_handle(h)));
-      splitEdge(mesh, e, addVertex(middle, normal, mesh.calc_edge_length(e)), region_.inputTriangle);
+      const std::vector<Vector3d> ring{mesh.point(a), apex(mesh.opposite_halfedge_handle(h)), mesh.point(b),
+                                       apex(h)};
+      const VertexHandle v = addVertex(0.5 * (mesh.point(a) + mesh.point(b)), normal, ring);
+      splitEdge(mesh, e, v, region_.inputTriangle);
     }
     std::vector<FaceHandle> enclosed;
     for (const auto f : mesh.faces()) {
@@ -53,8 +69,9 @@ class ConstraintSplit {
       if (all) enclosed.push_back(f);
     }
     for (const auto f : enclosed) {
-      const double size = mesh.calc_edge_length(mesh.halfedge_handle(f));
-      const VertexHandle v = addVertex(mesh.calc_face_centroid(f), mesh.calc_face_normal(f), size);
+      std::vector<Vector3d> ring;
+      for (const auto v : mesh.fv_range(f)) ring.push_back(mesh.point(v));
+      const VertexHandle v = addVertex(mesh.calc_face_centroid(f), mesh.calc_face_normal(f), ring);
       splitFace(mesh, f, v, region_.inputTriangle);
     }
     region_.edgeCurve.resize(mesh.n_edges());
@@ -64,10 +81,12 @@ class ConstraintSplit {
   void hold(VertexHandle v) { held_[v.idx()] = true; }
   bool held(VertexHandle v) const { return held_[v.idx()]; }
 
-  VertexHandle addVertex(Vector3d point, const Vector3d& normal, double size) {
+  /// \param ring  the corners of the triangles that meet at the new vertex, counter-clockwise
+  VertexHandle addVertex(Vector3d point, const Vector3d& normal, const std::vector<Vector3d>& ring) {
     if (region_.surface) {
       const auto foot = region_.surface->closestFacing(point, normal);
-      if (foot.normal.dot(normal) > 0 && (foot.point - point).norm() <= kOffMiddle * size) point = foot.point;
+      const double kept = smallestPart(foot.point, normal, ring) / smallestPart(point, normal, ring);
+      if (foot.normal.dot(normal) > 0 && kept >= kLeastPart) point = foot.point;
     }
     held_.push_back(false);
     region_.curveParameter.push_back(0);

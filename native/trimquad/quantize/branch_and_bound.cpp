@@ -8,7 +8,6 @@
 namespace trimquad {
 namespace {
 
-constexpr int kMostBranches = 10000;
 /// Objectives that differ by less are equal: the flow's costs are rounded.
 constexpr double kEqual = 1e-5;
 
@@ -28,8 +27,14 @@ struct Later {
 
 class Search {
  public:
-  Search(const Dual& dual, const Objective& objective, const SeparationTest& separation, const ArcLengths& q)
-      : dual_(dual), objective_(objective), separation_(separation), best_(q), bestObjective_(objective(q)) {}
+  Search(const Dual& dual, const Objective& objective, const SeparationTest& separation, const ArcLengths& q,
+         long long mostWork)
+      : dual_(dual),
+        objective_(objective),
+        separation_(separation),
+        best_(q),
+        bestObjective_(objective(q)),
+        mostWork_(mostWork) {}
 
   Optimum run(const Progress& progress) && {
     add(boundsOfSeparation(dual_, separation_), best_);
@@ -38,7 +43,7 @@ class Search {
       progress.check();
       const auto branch = open_.top();
       if (branch->flow.objective >= bestObjective_ - kEqual) return {best_, bestObjective_, true};
-      if (count_ > kMostBranches) {
+      if (count_ * (long long)(best_.size()) > mostWork_) {
         bound = branch->flow.objective;
         return {best_, bound, false};
       }
@@ -84,18 +89,30 @@ class Search {
   /// does, ...
   void splitOn(const Branch& branch, const Collapse& collapse, const ArcLengths& q) {
     LengthBounds bounds = branch.bounds;
-    for (const auto* arcs : {&collapse.zeroArcs, &collapse.others})
-      for (const ArcId a : *arcs) {
-        if (bounds.least[a.index] == bounds.most[a.index]) continue;
-        LengthBounds above = bounds;
-        above.least[a.index] = q[a.index] + 1;
-        if (!above.most[a.index] || above.least[a.index] <= *above.most[a.index]) add(std::move(above), q);
-        LengthBounds below = bounds;
-        below.most[a.index] = q[a.index] - 1;
-        if (below.least[a.index] <= *below.most[a.index]) add(std::move(below), q);
-        bounds.least[a.index] = q[a.index];
-        bounds.most[a.index] = q[a.index];
+    splitOnLengths(collapse.zeroArcs, q, bounds);
+    for (const ArcId a : collapse.mightVanish) {
+      if (bounds.least[a.index] == 0) {
+        LengthBounds zero = bounds;
+        zero.most[a.index] = 0;
+        add(std::move(zero), q);
       }
+      bounds.least[a.index] = std::max(bounds.least[a.index], 1);
+    }
+    splitOnLengths(collapse.others, q, bounds);
+  }
+
+  void splitOnLengths(const std::vector<ArcId>& arcs, const ArcLengths& q, LengthBounds& bounds) {
+    for (const ArcId a : arcs) {
+      if (bounds.least[a.index] == bounds.most[a.index]) continue;
+      LengthBounds above = bounds;
+      above.least[a.index] = q[a.index] + 1;
+      if (!above.most[a.index] || above.least[a.index] <= *above.most[a.index]) add(std::move(above), q);
+      LengthBounds below = bounds;
+      below.most[a.index] = q[a.index] - 1;
+      if (below.least[a.index] <= *below.most[a.index]) add(std::move(below), q);
+      bounds.least[a.index] = q[a.index];
+      bounds.most[a.index] = q[a.index];
+    }
   }
 
   const Dual& dual_;
@@ -103,6 +120,7 @@ class Search {
   const SeparationTest& separation_;
   ArcLengths best_;
   double bestObjective_;
+  long long mostWork_;
   int count_ = 0;
   std::priority_queue<std::shared_ptr<Branch>, std::vector<std::shared_ptr<Branch>>, Later> open_;
 };
@@ -110,8 +128,8 @@ class Search {
 }  // namespace
 
 Optimum leastLengths(const Dual& dual, const Objective& objective, const SeparationTest& separation,
-                     const ArcLengths& q, const Progress& progress) {
-  return Search(dual, objective, separation, q).run(progress);
+                     const ArcLengths& q, long long mostWork, const Progress& progress) {
+  return Search(dual, objective, separation, q, mostWork).run(progress);
 }
 
 }  // namespace trimquad

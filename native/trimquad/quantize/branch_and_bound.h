@@ -14,8 +14,8 @@ struct Optimum {
 
 /// The least objective over all consistent, separating lengths. Starts from valid lengths `q`. Branches, from
 /// the least-cost flow, on arcs of half lengths and on the arcs of a collapse: one of them must change. Gives
-/// up proving after a fixed number of branches.
+/// up proving, with the best lengths found so far, after `mostWork` branches times arcs.
 Optimum leastLengths(const Dual& dual, const Objective& objective, const SeparationTest& separation,
-                     const ArcLengths& q, const Progress& progress);
+                     const ArcLengths& q, long long mostWork, const Progress& progress);
 
 }  // namespace trimquad

@@ -142,12 +142,40 @@ std::optional<DeviationFlow> leastDeviation(const Dual& dual, const Objective& o
 LengthBounds boundsOfSeparation(const Dual& dual, const SeparationTest& separation) {
   LengthBounds bounds;
   bounds.most.resize(dual.uses.size());
-  for (std::size_t a = 0; a < dual.uses.size(); ++a) bounds.least.push_back(separation.mustNotVanish({int(a)}));
+  for (std::size_t a = 0; a < dual.uses.size(); ++a)
+    bounds.least.push_back(separation.mustNotVanish({int(a)}));
   return bounds;
 }
 
-std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective, const SeparationTest& separation,
-                                        const ArcLengths& start, const Progress& progress) {
+namespace {
+
+/// The flow `q` within `bounds`, improved by dropping bounds that turn out not to be needed for separation,
+/// one by one.
+ArcLengths withoutNeedlessBounds(const Dual& dual, const Objective& objective,
+                                 const SeparationTest& separation, LengthBounds bounds, ArcLengths q,
+                                 const Progress& progress) {
+  double least = objective(q);
+  for (std::size_t a = 0; a < q.size(); ++a) {
+    if (bounds.least[a] == 0 || q[a] > bounds.least[a] || separation.mustNotVanish({int(a)})) continue;
+    progress.check();
+    LengthBounds fewer = bounds;
+    fewer.least[a] = 0;
+    const auto flow = leastDeviation(dual, objective, fewer, q);
+    if (!flow || flow->objective > least - 1e-9) continue;
+    ArcLengths shorter;
+    bool isWhole = true;
+    for (const int twice : flow->twice) shorter.push_back(twice / 2), isWhole = isWhole && twice % 2 == 0;
+    if (!isWhole || separation.fault(shorter)) continue;
+    bounds = std::move(fewer), q = std::move(shorter), least = objective(q);
+  }
+  return q;
+}
+
+}  // namespace
+
+std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective,
+                                        const SeparationTest& separation, const ArcLengths& start,
+                                        const Progress& progress) {
   LengthBounds bounds = boundsOfSeparation(dual, separation);
   ArcLengths q = start;
   for (int round = 0; round < kRepairs; ++round) {
@@ -164,7 +192,7 @@ std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objec
     }
     if (!isWhole) continue;
     const auto faults = separation.faults(q);
-    if (faults.empty()) return q;
+    if (faults.empty()) return withoutNeedlessBounds(dual, objective, separation, bounds, q, progress);
     bool canChange = false;
     for (const Collapse& fault : faults) {
       std::optional<ArcId> longest;

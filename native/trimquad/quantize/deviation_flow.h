@@ -30,9 +30,10 @@ struct DeviationFlow {
 std::optional<DeviationFlow> leastDeviation(const Dual& dual, const Objective& objective,
                                             const LengthBounds& bounds, const ArcLengths& start);
 
-/// Consistent, separating lengths: the least-cost flow, again and again with an arc of each collapse kept from vanishing.
-/// None where that leads nowhere.
-std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective, const SeparationTest& separation,
-                                        const ArcLengths& start, const Progress& progress);
+/// Consistent, separating lengths: the least-cost flow, again and again with an arc of each collapse kept
+/// from vanishing. None where that leads nowhere.
+std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective,
+                                        const SeparationTest& separation, const ArcLengths& start,
+                                        const Progress& progress);
 
 }  // namespace trimquad

@@ -6,6 +6,14 @@
 #include "trimquad/quantize/greedy.h"
 
 namespace trimquad {
+namespace {
+
+/// Branches times arcs: milliseconds; finds most optima of T-meshes that are not large.
+constexpr long long kWorkInPassing = 20000;
+/// Up to a minute or so, and some hundred megabytes.
+constexpr long long kWorkForProof = 2000000;
+
+}  // namespace
 
 Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, const Progress& progress) {
   const Dual dual(tmesh);
@@ -19,12 +27,11 @@ Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, co
     const int steps = improveGreedily(dual, objective, separation, *other, progress);
     if (objective(*other) < objective(result.length)) result.length = std::move(*other), result.steps = steps;
   }
-  if (options.optimal) {
-    Optimum optimum = leastLengths(dual, objective, separation, result.length, progress);
-    result.length = std::move(optimum.length);
-    result.lowerBound = optimum.lowerBound;
-    result.method = optimum.proven ? "optimal" : "bounded";
-  }
+  Optimum optimum = leastLengths(dual, objective, separation, result.length,
+                                 options.optimal ? kWorkForProof : kWorkInPassing, progress);
+  result.length = std::move(optimum.length);
+  result.lowerBound = optimum.lowerBound;
+  if (options.optimal) result.method = optimum.proven ? "optimal" : "bounded";
   TRIMQUAD_ASSERT(isConsistent(dual, result.length));
   TRIMQUAD_ASSERT(!separation.fault(result.length));
   result.objective = objective(result.length);

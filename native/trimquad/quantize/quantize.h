@@ -18,16 +18,18 @@ struct QuantizationOptions {
 /// and separating (a grid map with these lengths exists).
 struct Quantization {
   ArcLengths length;  ///< by arc, in quads
-  std::string
-      method;  ///< "greedy"; "optimal" where proven; "bounded" where the search for a proof was given up
-  double objective = 0;              ///< see `Objective`
-  std::optional<double> lowerBound;  ///< no separating lengths have a smaller objective; only with `optimal`
-  int steps = 0;                     ///< changes that improved the objective
+  /// "greedy"; "optimal" where proven; "bounded" where the search for a proof was given up
+  std::string method;
+  double objective = 0;   ///< see `Objective`
+  double lowerBound = 0;  ///< no separating lengths have a smaller objective
+  int steps = 0;          ///< changes that improved the objective
   int zeroArcs = 0, zeroPatches = 0;
 };
 
-/// Lengths near the arcs' target lengths. First strictly positive ones, then improved by elementary circuits
-/// while they stay separating. Throws Error(Stage, "quantize") where the T-mesh admits no positive lengths.
+/// Lengths near the arcs' target lengths: strictly positive ones, improved by elementary circuits as long as
+/// they stay separating; the least-cost flow, with its collapses repaired and improved in the same way; then,
+/// from the better of the two, a search that branches from the flow, short in general and long with
+/// `optimal`. Throws Error(Stage, "quantize") where the T-mesh admits no positive lengths.
 Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, const Progress& progress);
 
 }  // namespace trimquad

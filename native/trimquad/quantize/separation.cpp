@@ -91,12 +91,14 @@ class CollapseSearch {
     std::set<PatchId> patches;
     for (const Crossing& c : crossings) patches.insert(c.patch);
     addArcs(patches, collapse, true);
-    // More may be sound again, if the inside of a zero loop vanishes too or a piece of boundary between two
-    // points.
-    if (!forGood) {
-      for (const Point& p : points) addPatchesAround(p, patches);
-      addArcs(patches, collapse, false);
+    if (forGood) return collapse;
+    if (characteristic == 1) {
+      collapse.mightVanish = leastFrontier(points);
+      return collapse;
     }
+    // A zero loop is sound if what lies inside it vanishes too.
+    for (const Point& p : points) addPatchesAround(p, patches);
+    addArcs(patches, collapse, false);
     return collapse;
   }
 
@@ -160,29 +162,47 @@ class CollapseSearch {
     return critical > 1 || (lonely > 0 && curves > 0);
   }
 
+  /// The parts of boundaries and aligned curves in a class, each a component by the zero arcs of curves.
+  std::vector<std::vector<NodeId>> curveParts(const std::vector<Point>& points) const {
+    std::vector<std::vector<NodeId>> parts;
+    std::set<NodeId> reached;
+    for (const Point& p : points) {
+      if (!p.node) {
+        if (isCurve(tmesh_[p.arc])) parts.emplace_back();
+        continue;
+      }
+      if (!onCurve_[p.node->index] || !reached.insert(*p.node).second) continue;
+      std::vector<NodeId> part{*p.node};
+      for (std::size_t k = 0; k < part.size(); ++k)
+        for (const HalfArc h : dual_.leaving[part[k].index])
+          if (isCurve(tmesh_[h.arc]) && q_[h.arc.index] == 0 && reached.insert(tmesh_.end(h)).second)
+            part.push_back(tmesh_.end(h));
+      parts.push_back(std::move(part));
+    }
+    return parts;
+  }
+
   /// What a class holds of curves is one tree.
   bool curvesAreSound(const std::vector<Point>& points, const std::set<ArcId>& zeroArcs) const {
-    std::vector<NodeId> nodes;
-    int insideArcs = 0;
-    for (const Point& p : points)
-      if (!p.node)
-        insideArcs += isCurve(tmesh_[p.arc]);
-      else if (onCurve_[p.node->index])
-        nodes.push_back(*p.node);
-    if (nodes.empty() || insideArcs > 0) return int(nodes.size()) + insideArcs <= 1;
-    int arcs = 0;
-    for (const ArcId a : zeroArcs) arcs += isCurve(tmesh_[a]);
-    if (arcs != int(nodes.size()) - 1) return false;
-    std::set<NodeId> reached{nodes.front()};
-    std::vector<NodeId> waiting{nodes.front()};
-    while (!waiting.empty()) {
-      const NodeId n = waiting.back();
-      waiting.pop_back();
-      for (const HalfArc h : dual_.leaving[n.index])
-        if (isCurve(tmesh_[h.arc]) && q_[h.arc.index] == 0 && reached.insert(tmesh_.end(h)).second)
-          waiting.push_back(tmesh_.end(h));
+    const auto parts = curveParts(points);
+    if (parts.size() != 1 || parts.front().empty()) return parts.size() <= 1;
+    const auto arcs =
+        std::count_if(zeroArcs.begin(), zeroArcs.end(), [&](ArcId a) { return isCurve(tmesh_[a]); });
+    return std::size_t(arcs) + 1 == parts.front().size();
+  }
+
+  /// The arcs with a length that lead on from one part of the curves in a class: the part with the fewest.
+  std::vector<ArcId> leastFrontier(const std::vector<Point>& points) const {
+    std::optional<std::set<ArcId>> least;
+    for (const auto& part : curveParts(points)) {
+      std::set<ArcId> frontier;
+      for (const NodeId n : part)
+        for (const HalfArc h : dual_.leaving[n.index])
+          if (isCurve(tmesh_[h.arc]) && q_[h.arc.index] > 0) frontier.insert(h.arc);
+      if (!part.empty() && (!least || frontier.size() < least->size())) least = frontier;
     }
-    return reached.size() == nodes.size();
+    if (!least) return {};
+    return {least->begin(), least->end()};
   }
 
   void addPatchesAround(const Point& p, std::set<PatchId>& patches) const {

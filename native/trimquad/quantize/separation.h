@@ -13,11 +13,13 @@ enum class Separation {
   Strong  ///< paper, Definition 5.1: no two nodes on the boundary coincide. Needlessly strict, for comparison
 };
 
-/// Why lengths admit no integer grid map: the arcs whose lengths, taken together, make it so. As long as they
-/// keep them, the lengths stay inadmissible whatever the others are.
+/// Why lengths admit no integer grid map. It stays so as long as all arcs named keep their lengths and those
+/// of `mightVanish` do not vanish, whatever the others do.
 struct Collapse {
   std::vector<ArcId> zeroArcs;  ///< that are collapsed onto one point or line
-  std::vector<ArcId> others;    ///< that say what else is
+  std::vector<ArcId>
+      mightVanish;            ///< a zero piece of boundary could begin with one of them and make it right
+  std::vector<ArcId> others;  ///< whose lengths say what else is collapsed
 };
 
 /// Tests consistent lengths for separation. A patch of zero width is mapped onto a line and a zero arc onto a
@@ -41,13 +43,14 @@ class SeparationTest {
   /// Whether the arc has length one at least in all separating lengths, by what its two ends are.
   bool mustNotVanish(ArcId arc) const;
 
-  /// The same as without `touched`, where lengths without fault were changed in `touched` arcs only; as costly as what lies near
-  /// them.
+  /// The same as without `touched`, where lengths without fault were changed in `touched` arcs only; as
+  /// costly as what lies near them.
   std::optional<Collapse> fault(const ArcLengths& q, const std::vector<ArcId>& touched) const;
 
  private:
   std::vector<ArcId> allArcs() const;
-  std::vector<Collapse> search(const ArcLengths& q, const std::vector<ArcId>& touched, std::size_t most) const;
+  std::vector<Collapse> search(const ArcLengths& q, const std::vector<ArcId>& touched,
+                               std::size_t most) const;
 
   const Dual& dual_;
   const TMesh& tmesh_;

@@ -64,7 +64,9 @@ MapEnergy::Jacobian MapEnergy::jacobian(int face, const Eigen::VectorXd& x) cons
 }
 
 Eigen::VectorXd MapEnergy::coordinates(const Eigen::VectorXd& z) const {
-  return basis_.matrix() * z + basis_.offset();
+  Eigen::VectorXd x = basis_.matrix() * z + basis_.offset();
+  if (shift_.size() > 0) x += shift_;
+  return x;
 }
 
 int MapEnergy::flipped(const Eigen::VectorXd& x) const {

@@ -31,6 +31,9 @@ class MapEnergy {
   /// and they do not follow their target's directions.
   void setScaffold(int first, double weight);
 
+  /// Adds to all coordinates from now on.
+  void shift(const Eigen::VectorXd& x) { shift_ = x; }
+
   /// Jacobian of a triangle as derivatives by z and its conjugate: J a = fz a + fzbar conj(a).
   struct Jacobian {
     double fzReal, fzImag, fzbarReal, fzbarImag;
@@ -43,7 +46,7 @@ class MapEnergy {
   };
   Jacobian jacobian(int face, const Eigen::VectorXd& x) const;
 
-  Eigen::VectorXd coordinates(const Eigen::VectorXd& z) const;  ///< x = matrix z + offset
+  Eigen::VectorXd coordinates(const Eigen::VectorXd& z) const;  ///< x = matrix z + offset + shift
 
   int flipped(const Eigen::VectorXd& x) const;  ///< triangles with det <= 0
   double smallestDeterminant(const Eigen::VectorXd& x) const;
@@ -73,6 +76,7 @@ class MapEnergy {
   std::vector<Local> local_;
   HessianPattern pattern_;
   double totalArea_ = 0;
+  Eigen::VectorXd shift_;  ///< empty for 0
 };
 
 }  // namespace trimquad

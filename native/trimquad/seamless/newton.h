@@ -17,6 +17,7 @@ template <typename Density>
 double newtonStep(const MapEnergy& energy, const SeamBasis& basis, const Density& density, double follow,
                   bool keepInjective, SparseSolver& solver, Eigen::VectorXd& z,
                   const std::vector<int>& held = {}) {
+  if (z.size() == 0) return 0;
   const Eigen::VectorXd x = energy.coordinates(z);
   Eigen::VectorXd gradient;
   Eigen::SparseMatrix<double> hessian;

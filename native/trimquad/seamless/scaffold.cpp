@@ -94,7 +94,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
   const SurfaceMesh extended = buildSurfaceMesh(frame.soup);
   SeamGraph none;
   none.crossing.resize(extended.n_halfedges());
-  const SeamBasis extendedBasis(extended, none, {}, {});
+  const SeamBasis extendedBasis(extended, none, {});
 
   Eigen::VectorXd x(extendedBasis.basis().variableCount());
   const auto coordinate = [&](HalfedgeHandle h, int axis) {

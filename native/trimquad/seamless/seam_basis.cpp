@@ -5,11 +5,30 @@
 
 namespace trimquad {
 
-SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
-                     const std::vector<BranchTranslation>& translations,
-                     const std::vector<AlignedSide>& aligned)
+namespace {
+
+/// The terms that `factor` times coordinate `axis` of rotated(x, quarters) has in the coordinates of x, which
+/// start at `first`.
+void addRotated(std::vector<ConstraintBasis::Term>& terms, int first, int axis, int quarters, int factor) {
+  const FixedVector row = rotated(axis == 0 ? FixedVector{1, 0} : FixedVector{0, 1}, -quarters);
+  if (row.u != 0) terms.push_back({first, factor * row.u});
+  if (row.v != 0) terms.push_back({first + 1, factor * row.v});
+}
+
+}  // namespace
+
+void PathTransition::cross(const SeamGraph& seams, const SeamGraph::Crossing& crossing) {
+  const int quarters = seams.rotation[crossing.branch];
+  const int turn = crossing.forward ? quarters : (4 - quarters) & 3;
+  if (!crossing.forward) terms.push_back({crossing.branch, 0, -1});
+  rotation = (rotation + turn) & 3;
+  offset = rotated(offset, turn);
+  for (auto& term : terms) term.rotation = (term.rotation + turn) & 3;
+  if (crossing.forward) terms.push_back({crossing.branch, 0, 1});
+}
+
+SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams, const SeamConstraints& constraints)
     : branches_(int(seams.rotation.size())), wedge_(mesh.n_halfedges(), -1), basis_(0) {
-  TRIMQUAD_ASSERT(int(translations.size()) == branches_);
   for (const auto v : mesh.vertices()) {
     for (const auto start : mesh.voh_range(v)) {
       if (mesh.is_boundary(start) || wedge_[start.idx()] >= 0) continue;
@@ -32,14 +51,52 @@ SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
       ++wedgeCount_;
     }
   }
-  basis_ = ConstraintBasis(2 * branches_ + 2 * wedgeCount_);
-  // The whole map may be shifted at will: nothing holds it to the grid where there is no singularity.
-  if (wedgeCount_ > 0)
-    for (int axis = 0; axis < 2; ++axis) TRIMQUAD_ASSERT(basis_.addEquation({{coordinate(0, axis), 1}}, 0));
-  for (int b = 0; b < branches_; ++b)
+  basis_ = ConstraintBasis(2 * branches_ + 2 * wedgeCount_ + 2 * constraints.grid.count);
+  holdGauge(constraints.grid);
+  for (int b = 0; b < int(constraints.translations.size()); ++b)
     for (int axis = 0; axis < 2; ++axis)
-      if (translations[b][axis])
-        TRIMQUAD_ASSERT(basis_.addEquation({{translation(b, axis), 1}}, *translations[b][axis]));
+      if (const auto& whole = constraints.translations[b][axis])
+        TRIMQUAD_ASSERT(basis_.addEquation({{translation(b, axis), 1}}, *whole));
+  addGridPoints(mesh, constraints.grid);
+  addSeams(mesh, seams);
+  for (const auto& [side, axis] : constraints.aligned)
+    if (!basis_.addEquation({{coordinate(wedge(side), axis), 1},
+                             {coordinate(wedge(mesh.next_halfedge_handle(side)), axis), -1}},
+                            0))
+      throw stageError("optimize", "the integers of an aligned edge contradict each other",
+                       "edge " + std::to_string(mesh.edge_handle(side).idx()),
+                       mesh.point(mesh.from_vertex_handle(side)));
+  basis_.finish();
+}
+
+/// The whole map may be shifted at will, and the grid points where none of them is a vertex.
+void SeamBasis::holdGauge(const GridPoints& grid) {
+  for (int axis = 0; axis < 2; ++axis) {
+    if (grid.count > 0) TRIMQUAD_ASSERT(basis_.addEquation({{gridPoint(0, axis), 1}}, 0));
+    if (grid.places.empty() && wedgeCount_ > 0)
+      TRIMQUAD_ASSERT(basis_.addEquation({{coordinate(0, axis), 1}}, 0));
+  }
+}
+
+void SeamBasis::addGridPoints(const SurfaceMesh& mesh, const GridPoints& grid) {
+  for (const auto& [from, to, path] : grid.relations)
+    for (int axis = 0; axis < 2; ++axis) {
+      std::vector<ConstraintBasis::Term> terms{{gridPoint(to, axis), 1}};
+      addRotated(terms, gridPoint(from, 0), axis, path.rotation, -1);
+      for (const auto& term : path.terms)
+        addRotated(terms, translation(term.branch, 0), axis, term.rotation, -term.factor);
+      if (!basis_.addEquation(terms, path.offset[axis]))
+        throw stageError("optimize", "the integers of the quantization contradict each other");
+    }
+  for (const auto& [point, corner] : grid.places)
+    for (int axis = 0; axis < 2; ++axis)
+      if (!basis_.addEquation({{coordinate(wedge(corner), axis), 1}, {gridPoint(point, axis), -1}}, 0))
+        throw stageError("optimize", "the integers of a vertex contradict each other",
+                         "vertex " + std::to_string(mesh.from_vertex_handle(corner).idx()),
+                         mesh.point(mesh.from_vertex_handle(corner)));
+}
+
+void SeamBasis::addSeams(const SurfaceMesh& mesh, const SeamGraph& seams) {
   for (const auto h : mesh.halfedges()) {
     const auto& crossing = seams.crossing[h.idx()];
     if (!crossing || !crossing->forward) continue;
@@ -49,22 +106,14 @@ SeamBasis::SeamBasis(const SurfaceMesh& mesh, const SeamGraph& seams,
                                         {wedge(mesh.next_halfedge_handle(h)), wedge(o)}};
     for (const auto& [here, there] : ends)
       for (int axis = 0; axis < 2; ++axis) {
-        const FixedVector row =
-            rotated(axis == 0 ? FixedVector{1, 0} : FixedVector{0, 1}, -seams.rotation[crossing->branch]);
         std::vector<ConstraintBasis::Term> terms{{coordinate(there, axis), 1},
                                                  {translation(crossing->branch, axis), -1}};
-        if (row.u != 0) terms.push_back({coordinate(here, 0), -row.u});
-        if (row.v != 0) terms.push_back({coordinate(here, 1), -row.v});
+        addRotated(terms, coordinate(here, 0), axis, seams.rotation[crossing->branch], -1);
         if (!basis_.addEquation(terms, 0))
           throw stageError("seamless", "the integers of the seams contradict each other",
                            "edge " + std::to_string(h.idx() / 2), mesh.point(mesh.from_vertex_handle(h)));
       }
   }
-  for (const auto& [side, axis] : aligned)
-    TRIMQUAD_ASSERT(basis_.addEquation(
-        {{coordinate(wedge(side), axis), 1}, {coordinate(wedge(mesh.next_halfedge_handle(side)), axis), -1}},
-        0));
-  basis_.finish();
 }
 
 }  // namespace trimquad

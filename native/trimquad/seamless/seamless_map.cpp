@@ -39,10 +39,10 @@ Eigen::Vector2d alongSide(const SurfaceMesh& mesh, const MapTarget& target, Half
 }
 
 /// The sides of triangles along aligned edges, with the coordinate that the target keeps constant there.
-std::vector<AlignedSide> alignedSides(const Region& region, const MapTarget& target) {
-  const auto& mesh = region.mesh;
+std::vector<AlignedSide> alignedSides(const SurfaceMesh& mesh, const std::vector<EdgeHandle>& aligned,
+                                      const MapTarget& target) {
   std::vector<AlignedSide> sides;
-  for (const auto e : region.aligned)
+  for (const auto e : aligned)
     for (int k = 0; k < 2; ++k) {
       const auto side = mesh.halfedge_handle(e, k);
       if (mesh.is_boundary(side)) continue;
@@ -104,7 +104,7 @@ int outerLoopOf(const SurfaceMesh& mesh, const CrossField& field) {
 
 }  // namespace
 
-SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength,
+SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, Effort effort,
                         const Progress& progress) {
   if (!(edgeLength > 0) || !std::isfinite(edgeLength))
     throw inputError("seamless", "the edge length must be a positive number");
@@ -112,32 +112,38 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   SeamlessMap map;
   map.seams = seamGraph(mesh, field);
   map.target = mapTarget(mesh, field, map.seams.combing, edgeLength);
-  map.conformalScale = conformalScale(mesh, field);
-  map.alignedSides = alignedSides(region, map.target);
+  map.conformalTarget = map.target;
+  const auto scale = conformalScale(mesh, field);
+  for (size_t f = 0; f < scale.size(); ++f)
+    for (auto& corner : map.conformalTarget[f]) corner *= scale[f];
+  map.alignedSides = alignedSides(mesh, field.aligned, map.target);
   map.index = field.index;
-  std::vector<BranchTranslation> translations(map.seams.rotation.size());
+  SeamConstraints constraints;
+  constraints.aligned = map.alignedSides;
   if (map.seams.tube) {
     // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
     // grid wind around the tube like a thread.
     const Eigen::Vector2d around = lengthAlongEnd(mesh, field, map.target);
-    translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
+    constraints.translations.resize(1);
+    constraints.translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
   }
-  const SeamBasis basis(mesh, map.seams, translations, map.alignedSides);
-  const Eigen::VectorXd z = solveMap(mesh, map.seams, map.target, map.conformalScale, field.index, basis,
-                                     "seamless", map.counters, progress);
+  const SeamBasis basis(mesh, map.seams, constraints);
+  const Eigen::VectorXd z =
+      solveMap(mesh, map.seams, map.target, {map.target, map.conformalTarget}, std::nullopt, field.index,
+               basis, "seamless", effort, map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
   // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
   // A tube that is not becomes a plane region, whose map cannot follow the field.
-  if ((map.seams.outerLoop || map.seams.tube) && region.aligned.empty() && overlaps(map, map.seams)) {
+  if ((map.seams.outerLoop || map.seams.tube) && field.aligned.empty() && overlaps(map, map.seams)) {
     const double follow = map.seams.tube ? 0.0 : kFollow;
     map.counters.scaffolded = true;
     map.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
-    const SeamBasis plane(mesh, map.seams, {}, {});
+    const SeamBasis plane(mesh, map.seams, {});
     const Eigen::VectorXd apart =
         oneToOneMap(mesh, map.seams, map.target, plane, follow, map.counters, progress);
     static_cast<Parametrization&>(map) = exactMap(mesh, plane, apart, false);
   }
-  map.aligned = region.aligned;
+  map.aligned = field.aligned;
   map.featurePoints = region.featurePoints;
   verify(map, false);
   return map;

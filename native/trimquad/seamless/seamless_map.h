@@ -17,9 +17,10 @@ using MapTarget = std::vector<std::array<Eigen::Vector2d, 3>>;
 
 /// How a map came about.
 struct MapCounters {
-  int flippedBefore = 0;        ///< triangles that the Poisson solve turned over
-  int untangleIterations = 0;   ///< Newton steps until none was
-  bool conformalStart = false;  ///< whether that failed, and was done again from a nearly conformal map
+  int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
+  int pathSteps = 0;           ///< steps from a nearby map's constraints to its own
+  int untangleIterations = 0;  ///< Newton steps until none was
+  int start = 0;               ///< which start succeeded, from 0: the first one, or a later one
   bool convexStart =
       false;  ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
   bool scaffolded =
@@ -32,16 +33,22 @@ struct MapCounters {
 struct SeamlessMap : Parametrization {
   SeamGraph seams;
   MapTarget target;
-  std::vector<double> conformalScale;  ///< by face; see conformalScale()
+  MapTarget conformalTarget;  ///< scaled by conformalScale()
   std::vector<AlignedSide> alignedSides;
   std::vector<int>
       index;  ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
   MapCounters counters;
 };
 
+/// How hard to try.
+enum class Effort {
+  Easy,  ///< no more than a few triangles may have to be turned back
+  Full
+};
+
 /// The seamless map whose gradients follow `field`, scaled so that one quad is `edgeLength` (model units)
 /// wide. Throws Error(Stage, "seamless") where no valid map was found, naming the first triangle.
-SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength,
+SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, Effort effort,
                         const Progress& progress);
 
 }  // namespace trimquad

@@ -35,20 +35,23 @@ FieldGuidance guidanceFor(const Region& region, const SeedOptions& options, cons
           std::vector<double>(region.mesh.n_faces(), 0.0)};
 }
 
-/// Runs `field`, then maps it; adds the seconds to `seed`.
+/// Runs `field`, then maps it; adds the seconds to `seed`. Returns the error where there is no map.
 template <typename Field>
-void tryField(const Region& region, double edgeLength, const Field& field, const Progress& progress,
-              Seed& seed) {
+std::optional<Error> tryField(const Region& region, double edgeLength, const Field& field, Effort effort,
+                              const Progress& progress, Seed& seed) {
   auto start = std::chrono::steady_clock::now();
-  seed.field = field();
-  seed.fieldSeconds += secondsSince(start);
-  start = std::chrono::steady_clock::now();
-  struct Timer {
-    std::chrono::steady_clock::time_point start;
-    double& seconds;
-    ~Timer() { seconds += secondsSince(start); }
-  } timer{start, seed.seamlessSeconds};
-  seed.map = seamlessMap(region, seed.field, edgeLength, progress);
+  std::optional<Error> failure;
+  try {
+    seed.field = field();
+    seed.fieldSeconds += secondsSince(start);
+    start = std::chrono::steady_clock::now();
+    seed.map = seamlessMap(region, seed.field, edgeLength, effort, progress);
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::Stage) throw;
+    failure = error;
+  }
+  seed.seamlessSeconds += secondsSince(start);
+  return failure;
 }
 
 }  // namespace
@@ -60,16 +63,15 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   const FieldGuidance guidance = guidanceFor(region, options, progress);
   result.fieldSeconds = secondsSince(start);
 
-  const bool constrained = !region.aligned.empty() || !region.featurePoints.empty();
-  if (options.follow != SeedOptions::Follow::Given && !constrained && admitsNoSingularity(region.mesh)) {
-    try {
-      tryField(
-          region, options.edgeLength, [&] { return singularityFreeField(region.mesh, guidance, progress); },
-          progress, result);
-      if (result.map.counters.distortionEnd <= kLittleDistortion) return result;
-    } catch (const Error& error) {
-      if (error.kind() != Error::Kind::Stage) throw;
-    }
+  // Maps without singularities are worth some distortion, and are the last resort where all others fail.
+  const bool mayDoWithout = options.follow != SeedOptions::Follow::Given && region.aligned.empty() &&
+                            region.featurePoints.empty() && admitsNoSingularity(region.mesh);
+  const auto withoutSingularities = [&] { return singularityFreeField(region.mesh, guidance, progress); };
+  std::optional<Seed> without;
+  if (mayDoWithout &&
+      !tryField(region, options.edgeLength, withoutSingularities, Effort::Easy, progress, result)) {
+    if (result.map.counters.distortionEnd <= kLittleDistortion) return result;
+    without = result;
   }
 
   std::vector<double> reaches{options.follow == SeedOptions::Follow::Given ? kGivenReach : kCurvatureReach};
@@ -77,18 +79,22 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   if (options.follow != SeedOptions::Follow::Smooth) reaches.push_back(0);
   std::optional<Error> first;
   for (const double reach : reaches) {
-    try {
-      tryField(
-          region, options.edgeLength, [&] { return crossField(region, guidance, reach, progress); }, progress,
-          result);
+    const auto field = [&] { return crossField(region, guidance, reach, progress); };
+    if (const auto error = tryField(region, options.edgeLength, field, Effort::Full, progress, result);
+        !error)
       return result;
-    } catch (const Error& error) {
-      if (error.kind() != Error::Kind::Stage) throw;
-      if (!first) first = error;
-      ++result.fieldEdits;
-    }
+    else if (!first)
+      first = error;
+    ++result.fieldEdits;
   }
-  throw *first;
+  if (!without && mayDoWithout &&
+      !tryField(region, options.edgeLength, withoutSingularities, Effort::Full, progress, result))
+    without = result;
+  if (!without) throw *first;
+  without->fieldEdits = result.fieldEdits;
+  without->fieldSeconds = result.fieldSeconds;
+  without->seamlessSeconds = result.seamlessSeconds;
+  return *without;
 }
 
 }  // namespace trimquad

@@ -6,6 +6,7 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/base/sparse_solver.h"
+#include "trimquad/seamless/constraint_path.h"
 #include "trimquad/seamless/convex_start.h"
 #include "trimquad/seamless/map_energy.h"
 #include "trimquad/seamless/newton.h"
@@ -15,31 +16,6 @@ namespace trimquad {
 namespace {
 
 constexpr double kConverged = 1e-3;  // relative decrease of the energy in a step, at which optimisation ends
-
-/// Newton steps on the foldover-free energy until no triangle is flipped, or no progress is made.
-void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
-              const Progress& progress) {
-  SparseSolver solver("seamless");
-  double least = energy.smallestDeterminant(energy.coordinates(z));
-  if (least > 0) return;
-  int stalled = 0;
-  constexpr int kRounds = 40, kStepsPerRound = 8;
-  for (int round = 0; round < kRounds && stalled < 6; ++round) {
-    const double depth = std::min(0.0, least), epsilon = std::sqrt(1e-12 + 0.04 * depth * depth);
-    const auto density = [&](double I, double D) { return foldoverFree(I, D, epsilon); };
-    const double roundStart = least;
-    for (int step = 0; step < kStepsPerRound; ++step) {
-      progress.check();
-      const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
-      ++iterations;
-      const Eigen::VectorXd x = energy.coordinates(z);
-      least = energy.smallestDeterminant(x);
-      if (least > 0) return;
-      if (least > roundStart / 2 || decrease < 1e-5) break;
-    }
-    stalled = least > roundStart * (1 - 1e-3) ? 0 : stalled + 1;
-  }
-}
 
 /// The map turned as a whole so that it follows the target best, within `quarters` only where the map has a
 /// period.
@@ -124,11 +100,35 @@ std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMe
 
 }  // namespace
 
-Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis) {
+void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
+              const Progress& progress) {
+  SparseSolver solver("seamless");
+  double least = energy.smallestDeterminant(energy.coordinates(z));
+  if (least > 0) return;
+  int stalled = 0;
+  constexpr int kRounds = 40, kStepsPerRound = 8;
+  for (int round = 0; round < kRounds && stalled < 6; ++round) {
+    const double depth = std::min(0.0, least), epsilon = std::sqrt(1e-12 + 0.04 * depth * depth);
+    const auto density = [&](double I, double D) { return foldoverFree(I, D, epsilon); };
+    const double roundStart = least;
+    for (int step = 0; step < kStepsPerRound; ++step) {
+      progress.check();
+      const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
+      ++iterations;
+      const Eigen::VectorXd x = energy.coordinates(z);
+      least = energy.smallestDeterminant(x);
+      if (least > 0) return;
+      if (least > roundStart / 2 || decrease < 1e-5) break;
+    }
+    stalled = least > roundStart * (1 - 1e-3) ? 0 : stalled + 1;
+  }
+}
+
+Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis) {
   // The squared distance to the target alone: its first Newton step from anywhere is the solution.
-  const MapEnergy energy(mesh, target, basis);
   const auto none = [](double, double) { return MapDensity{0, 0, 0, 0, 0}; };
   Eigen::VectorXd z = Eigen::VectorXd::Zero(basis.basis().freeCount()), gradient;
+  if (z.size() == 0) return z;
   Eigen::SparseMatrix<double> hessian;
   energy.derivatives(energy.coordinates(z), none, 1, gradient, hessian);
   SparseSolver solver("seamless");
@@ -136,36 +136,48 @@ Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, con
   return z - solver.solve(gradient);
 }
 
+Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis) {
+  return leastSquares(MapEnergy(mesh, target, basis), basis);
+}
+
 Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
-                         const std::vector<double>& conformalScale, const std::vector<int>& index,
-                         const SeamBasis& basis, const std::string& stage, MapCounters& counters,
-                         const Progress& progress) {
+                         const std::vector<MapTarget>& starts, const std::optional<Eigen::VectorXd>& nearby,
+                         const std::vector<int>& index, const SeamBasis& basis, const std::string& stage,
+                         Effort effort, MapCounters& counters, const Progress& progress) {
   const MapEnergy energy(mesh, target, basis);
-  const Eigen::VectorXd poisson = poissonMap(mesh, target, basis);
-  progress.report(0.2);
-  Eigen::VectorXd z = poisson;
-  counters.flippedBefore = energy.flipped(energy.coordinates(z));
+  Eigen::VectorXd z;
   const auto injective = [&] {
     return energy.flipped(energy.coordinates(z)) == 0 &&
            wrongCones(mesh, index, basis, energy.coordinates(z)).empty();
   };
-  if (counters.flippedBefore > 0) untangle(energy, basis, z, counters.untangleIterations, progress);
-  if (!injective()) {
-    // Cones can have been wound up the wrong way: start again from a nearly conformal map.
-    counters.conformalStart = true;
-    MapTarget scaled = target;
-    for (size_t f = 0; f < scaled.size(); ++f)
-      for (auto& corner : scaled[f]) corner *= conformalScale[f];
-    const MapEnergy conformal(mesh, scaled, basis);
-    z = poissonMap(mesh, scaled, basis);
-    if (!injective()) untangle(conformal, basis, z, counters.untangleIterations, progress);
+  bool found = false;
+  for (size_t k = 0; k < starts.size() && !found; ++k) {
+    counters.start = int(k);
+    z = poissonMap(mesh, starts[k], basis);
+    progress.report(0.2);
+    const int flipped = energy.flipped(energy.coordinates(z));
+    if (k == 0) counters.flippedBefore = flipped;
+    constexpr double kEasy = 1e-3;  // of the triangles
+    if (effort == Effort::Easy && flipped > kEasy * double(mesh.n_faces())) break;
+    if (!(found = injective()) && k == 0 && nearby) {
+      if (const auto moved =
+              followConstraints(mesh, target, index, basis, *nearby, counters.pathSteps, progress)) {
+        z = *moved;
+        found = injective();
+      }
+    }
+    if (!found) {
+      untangle(MapEnergy(mesh, starts[k], basis), basis, z, counters.untangleIterations, progress);
+      found = injective();
+    }
   }
-  if (!injective()) {
-    const auto grown = grownMap(energy, mesh, seams, target, basis, poisson);
-    if (!grown) throwStillFlipped(mesh, index, basis, energy, energy.coordinates(z), stage);
-    z = *grown;
-    counters.convexStart = true;
+  if (!found && effort == Effort::Full) {
+    if (const auto grown = grownMap(energy, mesh, seams, target, basis, poissonMap(mesh, target, basis))) {
+      z = *grown;
+      counters.convexStart = found = true;
+    }
   }
+  if (!found) throwStillFlipped(mesh, index, basis, energy, energy.coordinates(z), stage);
   progress.report(0.5);
   counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
   SparseSolver solver(stage);

@@ -9,6 +9,7 @@
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/singularity_free_field.h"
 #include "trimquad/mesh/boundary_image.h"
+#include "trimquad/tmesh/partition.h"
 
 namespace trimquad {
 namespace {
@@ -19,7 +20,9 @@ CrossField fieldOf(const Region& r) {
 
 GridMap mapOf(const Region& r, double edgeLength) {
   const CrossField field = fieldOf(r);
-  return gridMap(seamlessMap(r, field, edgeLength, Progress()), Progress());
+  const SeamlessMap seamless = seamlessMap(r, field, edgeLength, Effort::Full, Progress());
+  const TMesh tmesh = partition(seamless, Progress());
+  return gridMap(seamless, tmesh, quantize(tmesh, {}, Progress()), Progress());
 }
 
 /// Translation of the seam that a tube's map has, in quads (as long as it has one).
@@ -85,7 +88,7 @@ TEST(GridMap, spiralRampIsUnrolledWithoutCoveringThePlaneTwice) {
     const double a = 3 * M_PI * s, radius = 2 - t;
     return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), 0.1 * a);
   }));
-  const SeamlessMap map = seamlessMap(r, fieldOf(r), 0.1, Progress());
+  const SeamlessMap map = seamlessMap(r, fieldOf(r), 0.1, Effort::Full, Progress());
   EXPECT_TRUE(map.counters.scaffolded);
   verify(map, false);
   std::vector<BoundarySegment> segments;
@@ -120,7 +123,7 @@ TEST(GridMap, stopsWhenCancelled) {
   const CrossField field = fieldOf(r);
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(seamlessMap(r, field, 0.2, progress), Error);
+  EXPECT_THROW(seamlessMap(r, field, 0.2, Effort::Full, progress), Error);
 }
 
 }  // namespace

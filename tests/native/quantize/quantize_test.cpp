@@ -1,37 +1,222 @@
 #include "trimquad/quantize/quantize.h"
 
+#include <cmath>
+
+#include "quotient.h"
 #include "tmesh/random_surfaces.h"
 #include "tmesh/tmesh_checks.h"
+#include "trimquad/quantize/circuits.h"
+#include "trimquad/quantize/greedy.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;
 
 namespace {
 
-GridMap randomMap(unsigned seed) {
+/// A random map, in quads from much larger than the surface to much smaller: the same map in another unit.
+GridMap randomMap(unsigned seed, bool curves) {
   std::mt19937 random(seed);
   GridMap map = random() % 2 == 0 ? randomDomain(random) : randomSingularSurface(random);
-  if (random() % 2 == 0) alignSome(map, 1 + random() % 4, random);
+  if (curves && random() % 2 == 0) alignSome(map, 1 + random() % 4, random);
   if (random() % 3 == 0) markSome(map, 2 + random() % 20, random);
-  // From quads much larger than the surface to much smaller ones: the same map in another unit.
   map.scale.bits += int(random() % 9) - 4;
   return map;
 }
 
+bool isSoundQuotient(const GridMap& map, const TMesh& tmesh, const ArcLengths& q) {
+  return QuotientSurface(tmesh, q).isSound(eulerCharacteristic(map.mesh),
+                                           int(boundaryLoops(map.mesh).size()));
+}
+
+/// Least objective over all separating lengths under `limit`, by trying all; infinite if there is none.
+class Exhaustive {
+ public:
+  Exhaustive(const Dual& dual, const Objective& objective, const SeparationTest& separation, double limit)
+      : dual_(dual), objective_(objective), separation_(separation), best_(limit), q_(dual.uses.size(), 0) {
+    std::vector<std::size_t> last(dual.terms.size(), 0);
+    for (std::size_t e = 0; e < dual.terms.size(); ++e)
+      for (const auto& term : dual.terms[e]) last[e] = std::max(last[e], std::size_t(term.arc.index));
+    closing_.resize(q_.size());
+    for (std::size_t e = 0; e < last.size(); ++e) closing_[last[e]].push_back(EquationId{int(e)});
+    try_(0, 0);
+  }
+
+  double best() const { return best_; }
+
+ private:
+  void try_(std::size_t a, double cost) {
+    if (a == q_.size()) {
+      if (!separation_.fault(q_)) best_ = cost;
+      return;
+    }
+    // Outwards from the target.
+    const int middle = std::max(0, int(std::lround(objective_.target[a])));
+    for (const int step : {1, -1})
+      for (q_[a] = middle + (step < 0 ? -1 : 0); q_[a] >= 0; q_[a] += step) {
+        const double next = cost + objective_.of({int(a)}, q_[a]);
+        if (next >= best_ - 1e-9) break;
+        if (balanced(a)) try_(a + 1, next);
+      }
+  }
+
+  bool balanced(std::size_t a) const {
+    for (const EquationId e : closing_[a]) {
+      int sum = 0;
+      for (const auto& term : dual_[e]) sum += term.sign * q_[term.arc.index];
+      if (sum != 0) return false;
+    }
+    return true;
+  }
+
+  const Dual& dual_;
+  const Objective& objective_;
+  const SeparationTest& separation_;
+  double best_;
+  ArcLengths q_;
+  std::vector<std::vector<EquationId>> closing_;  ///< by arc: equations that are complete with it
+};
+
+/// A tall domain with notches on both sides in turn, `step` apart, so that as many lines cross it; blocks at
+/// its ends.
+GridMap notchedColumn(int notches, double step) {
+  const int rows = notches + 5;
+  return planarMap(sheet(6, rows,
+                         [&](int i, int j) -> Eigen::Vector2d {
+                           const int notch = j - 2;
+                           double left = -3, right = 3;
+                           if (notch >= 0 && notch < notches) (notch % 2 == 0 ? left : right) *= 0.98;
+                           const double y = j < 2             ? 2.0 * (j - 2) - 0.1 * step
+                                            : j > 2 + notches ? notches * step + 2.0 * (j - 2 - notches)
+                                                              : notch * step;
+                           return {left + (right - left) * i / 6, y};
+                         }),
+                   30);
+}
+
 }  // namespace
 
-TEST(Quantize, randomSurfaces) {
+TEST(Separation, isWhatMakesTheQuotientTheSameSurface) {
+  // Random consistent lengths with many zeros: multiples of circuits added to zero.
   const Progress progress;
+  int sound = 0, unsound = 0;
+  for (unsigned seed = 0; seed < 600 && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const GridMap map = randomMap(seed, false);
+    const TMesh tmesh = partition(map, progress);
+    if (tmesh.arcs.size() > 150) continue;
+    const Dual dual(tmesh);
+    const SeparationTest separation(dual, Separation::Free);
+    CircuitSearch circuits(dual);
+    std::mt19937 random(seed);
+    std::vector<double> price(tmesh.arcs.size());
+    ArcLengths q(tmesh.arcs.size(), 0);
+    for (int k = 0; k < 60; ++k) {
+      for (double& p : price) p = 1 + random() % 50;
+      const auto circuit =
+          circuits.through({int(random() % q.size())}, 1, [&](ArcId a, int change, int already) {
+            return q[a.index] + already + change < 0 ? std::numeric_limits<double>::infinity()
+                                                     : price[a.index];
+          });
+      if (circuit)
+        for (const auto& s : circuit->steps) q[s.arc.index] += s.change;
+      ASSERT_TRUE(isConsistent(dual, q));
+      const bool expected = isSoundQuotient(map, tmesh, q);
+      EXPECT_EQ(!separation.fault(q), expected) << "after " << k << " circuits";
+      (expected ? sound : unsound) += 1;
+    }
+  }
+  EXPECT_GT(sound, 1000);
+  EXPECT_GT(unsound, 1000);
+}
+
+TEST(Quantize, randomSurfacesGetConsistentSeparatingLengths) {
+  const Progress progress;
+  for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const GridMap map = randomMap(seed, true);
+    const TMesh tmesh = partition(map, progress);
+    const Dual dual(tmesh);
+    const ArcLengths positive = positiveLengths(dual, Objective(tmesh, 0.1), progress);
+    EXPECT_TRUE(isConsistent(dual, positive));
+    EXPECT_GE(*std::min_element(positive.begin(), positive.end()), 1);
+    const Quantization result = quantize(tmesh, {}, progress);
+    EXPECT_TRUE(isConsistent(dual, result.length));
+    EXPECT_TRUE(isSoundQuotient(map, tmesh, result.length));
+    QuantizationOptions strong;
+    strong.separation = Separation::Strong;
+    EXPECT_TRUE(isSoundQuotient(map, tmesh, quantize(tmesh, strong, progress).length));
+  }
+}
+
+TEST(Quantize, targetsThatAreWholeAreKept) {
+  const Progress progress;
+  for (const int quarters : {3, 5, 6}) {
+    const GridMap map = gridMapOf(cone(quarters, 6, 3), 30);
+    EXPECT_EQ(quantize(partition(map, progress), {}, progress).objective, 0);
+  }
+  const GridMap torus = gridMapOf(wrapped(12, 8, 0.5, 0.5, true), 30);
+  EXPECT_EQ(quantize(partition(torus, progress), {}, progress).objective, 0);
+}
+
+TEST(Quantize, aTorusFarSmallerThanAQuadKeepsBothItsHandles) {
+  const Progress progress;
+  const GridMap torus = gridMapOf(wrapped(12, 8, 0.001, 0.001, true), 30);
+  const Quantization q = quantize(partition(torus, progress), {}, progress);
+  EXPECT_EQ(q.zeroArcs, 0);
+}
+
+TEST(Quantize, aThinColumnMayLoseItsHeightBetweenNotches) {
+  const Progress progress;
+  constexpr int kNotches = 8;
+  const GridMap map = notchedColumn(kNotches, 0.01);
+  const TMesh tmesh = partition(map, progress);
+  // The height between the first and the last notch: that of the zero side of patches with two real arcs
+  // across.
+  const auto height = [&](Separation separation) {
+    QuantizationOptions options;
+    options.separation = separation;
+    const ArcLengths q = quantize(tmesh, options, progress).length;
+    int sum = 0, count = 0;
+    for (const auto& patch : tmesh.patches)
+      if (patch.type == 10)
+        for (int side = 0; side < 4; ++side)
+          if (std::any_of(patch.sides[side].begin(), patch.sides[side].end(),
+                          [&](HalfArc h) { return !tmesh[h.arc].isVirtual; })) {
+            sum += lengthOf(patch.sides[(side + 1) % 4], q), ++count;
+            break;
+          }
+    EXPECT_EQ(count, kNotches - 1);
+    return sum;
+  };
+  EXPECT_EQ(height(Separation::Free), 0);
+  // Nodes on the same side stay apart by height, every second one at least.
+  EXPECT_GE(height(Separation::Strong), kNotches / 2);
+}
+
+TEST(Quantize, theProvenOptimumIsTheOptimum) {
+  const Progress progress;
+  int proven = 0;
+  double greedy = 0, optimal = 0;
   for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const TMesh tmesh = partition(randomMap(seed), progress);
-    const Quantization greedy = quantize(tmesh, {}, progress);
+    const GridMap map = randomMap(seed, true);
+    const TMesh tmesh = partition(map, progress);
+    if (tmesh.arcs.size() > 22) continue;
     QuantizationOptions options;
-    options.optimal = tmesh.arcs.size() < 60;
-    const Quantization optimal = quantize(tmesh, options, progress);
-    printf("seed %u arcs %zu greedy %.6g %s %.6g bound %.6g zero %d/%d\n", seed, tmesh.arcs.size(), greedy.objective, optimal.method.c_str(), optimal.objective, optimal.lowerBound.value_or(0), greedy.zeroArcs, greedy.zeroPatches);
-    fflush(stdout);
-    EXPECT_LE(optimal.objective, greedy.objective + 1e-6);
-    EXPECT_LE(optimal.lowerBound.value_or(0), optimal.objective + 1e-6);
+    options.optimal = true;
+    const Quantization best = quantize(tmesh, options, progress);
+    EXPECT_LE(best.lowerBound, best.objective + 1e-9);
+    const Quantization fast = quantize(tmesh, {}, progress);
+    EXPECT_GE(fast.objective, best.objective - 1e-9);
+    if (best.method != "optimal" || best.objective > 4) continue;
+    ++proven;
+    greedy += fast.objective, optimal += best.objective;
+    const Dual dual(tmesh);
+    const Exhaustive all(dual, Objective(tmesh, options.virtualWeight),
+                         SeparationTest(dual, Separation::Free), best.objective + 1e-3);
+    EXPECT_NEAR(all.best(), best.objective, 1e-4);
   }
+  EXPECT_GT(proven, 20);
+  RecordProperty("greedy", std::to_string(greedy));
+  RecordProperty("optimal", std::to_string(optimal));
 }

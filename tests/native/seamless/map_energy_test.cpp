@@ -100,7 +100,7 @@ struct Sheet {
 
 TEST(MapEnergy, gradientIsTheSlopeOfTheValue) {
   const Sheet sheet(4);
-  const SeamBasis basis(sheet.mesh, sheet.seams, {}, {});
+  const SeamBasis basis(sheet.mesh, sheet.seams, {});
   const MapEnergy energy(sheet.mesh, sheet.target, basis);
   for (unsigned seed = 1; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
@@ -123,7 +123,7 @@ TEST(MapEnergy, gradientIsTheSlopeOfTheValue) {
 /// The distance to the target is quadratic: its Hessian is exact.
 TEST(MapEnergy, hessianOfTheDistanceToTheTargetIsExact) {
   const Sheet sheet(3);
-  const SeamBasis basis(sheet.mesh, sheet.seams, {}, {});
+  const SeamBasis basis(sheet.mesh, sheet.seams, {});
   const MapEnergy energy(sheet.mesh, sheet.target, basis);
   const auto none = [](double, double) { return MapDensity{0, 0, 0, 0, 0}; };
   std::srand(3);

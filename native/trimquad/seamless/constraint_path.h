@@ -1,0 +1,18 @@
+#pragma once
+
+#include "trimquad/base/progress.h"
+#include "trimquad/seamless/map_energy.h"
+
+namespace trimquad {
+
+/// Takes a locally injective map to the constraints of the basis: the constants of the constraints move from
+/// the values they have in x to their own in steps that are as long as a map near the one before can be found
+/// for, by a Poisson solve and untangling. Returns z of the basis, or nothing where the steps become too
+/// small.
+/// \param x  coordinates of the basis; all its equations hold but for constants
+std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const MapTarget& target,
+                                                 const std::vector<int>& index, const SeamBasis& basis,
+                                                 const Eigen::VectorXd& x, int& iterations,
+                                                 const Progress& progress);
+
+}  // namespace trimquad
