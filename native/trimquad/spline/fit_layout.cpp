@@ -24,8 +24,13 @@ constexpr double kCorrectedWins = 0.7;
 constexpr double kEmphasis = 10;
 constexpr double kWorstPart = 0.3;
 constexpr int kPatience = 4;
+/// Part of the samples at which the surface may be turned over, next to singularities, while parameters are
+/// corrected.
+constexpr double kFewTurned = 0.002;
 /// Charts that a foot may cross on its way.
 constexpr int kMaxHops = 4;
+/// Factor of the tangents' weight at singularities for every refinement that brought little.
+constexpr double kTangentGivesWay = 0.1;
 constexpr double kOnLine = 1e-9;  ///< quads
 
 struct Deviation {
@@ -325,7 +330,7 @@ class LayoutFit {
 
   bool correctionPays() const {
     const bool early = deviation_.max > kCorrectionStarts * tolerance_ && !stalled();
-    if (deviation_.turnedOver > 0) return false;
+    if (deviation_.turnedOver > kFewTurned * double(samples_.size())) return false;
     if (deviation_.max <= tolerance_ || early || corrections_ >= kMaxCorrections) return false;
     return corrections_ == 0 || deviation_.max <= kCorrectionPays * previous_.max ||
            deviation_.rms <= kCorrectionPays * previous_.rms;
@@ -342,6 +347,8 @@ class LayoutFit {
     idle_ = best_ < 0.8 * atRefinement_ ? 0 : idle_ + 1;
     thorough_ = stalled();
     atRefinement_ = best_;
+    // What stalls next to a singularity may be held by the tangents there.
+    if (idle_ > 0) space_.tangentWeight *= kTangentGivesWay;
     if (idle_ > kPatience || !insertKnots() || space_.poles() > kMaxPoles) throw unreachable();
   }
 

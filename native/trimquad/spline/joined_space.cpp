@@ -14,9 +14,6 @@ constexpr double kExactWeight = 100;
 constexpr int kMaxMultiplierSteps = 100;
 /// Violations of exact conditions that are left, relative to the extent of the data.
 constexpr double kRounding = 1e-13;
-/// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
-/// quad^2 of surface.
-constexpr double kTangentWeight = 3;
 /// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
 constexpr double kTangentReach = 2;
 constexpr double kBeyondBoundary = 0.5;  ///< quads
@@ -165,7 +162,7 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
       if (border.feature) continue;
       const bool near = (reachStart > 0 && s < reachStart) || (reachEnd > 0 && length - s < reachEnd);
       Condition smooth = acrossAt(s, tangentFactor(s));
-      smooth.weight = (near ? kTangentWeight : kExactWeight) * width;
+      smooth.weight = (near ? tangentWeight : kExactWeight) * width;
       smooth.exact = !near;
       conditions.push_back(std::move(smooth));
     }

@@ -15,6 +15,9 @@ class JoinedSpace {
   explicit JoinedSpace(const Layout& layout) : layout_(layout) {}
 
   std::vector<SplineSpace> charts;  ///< by chart of the layout
+  /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
+  /// quad^2 of surface.
+  double tangentWeight = 3;
 
   int poles() const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace trimquad {
 namespace {
@@ -10,6 +11,9 @@ constexpr double kSamplesAcrossSpan = 4;
 constexpr int kLargestOrder = 16;
 /// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
 constexpr double kBoundaryStrip = 0.25;
+
+/// How far from a singularity parameters are moved, quads.
+constexpr double kSingularReach = 2;
 
 }  // namespace
 
@@ -33,6 +37,7 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
     }
     for (const auto v : mesh.fv_range(f)) vertexNormal_[v.idx()] += (p[1] - p[0]).cross(p[2] - p[0]);
   }
+  collectSingularCorners();
   std::nth_element(extents.begin(), extents.begin() + extents.size() / 2, extents.end());
   extent_ = extents[extents.size() / 2];
   for (const auto v : mesh.vertices()) {
@@ -45,6 +50,40 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
     // Boundary vertices stay on the curve that the neighbouring region shares.
     if (!mesh.is_boundary(v)) vertexPoint_.back() = foot.point;
   }
+}
+
+void LayoutSamples::collectSingularCorners() {
+  singular_.resize(layout_.charts.size());
+  const auto isSingular = [&](int point) {
+    return layout_.points[point].inner() && layout_.points[point].quarters != 4;
+  };
+  std::map<int, double> reach;  // by point
+  for (const auto& border : layout_.borders)
+    for (const int point : {border.startPoint, border.endPoint}) {
+      const bool both = isSingular(border.startPoint) && isSingular(border.endPoint);
+      const double own = both ? border.length() / 2 : border.length();
+      const auto [it, isNew] = reach.try_emplace(point, kSingularReach);
+      it->second = std::min(it->second, own);
+    }
+  for (const auto& border : layout_.borders)
+    for (const bool atStart : {true, false}) {
+      const int point = atStart ? border.startPoint : border.endPoint;
+      if (!isSingular(point)) continue;
+      // Every sector has two borders there; one of them has it to its left, seen from the singularity.
+      const int side = atStart ? 0 : 1;
+      singular_[border.chart[side]].push_back({atStart ? border.start[side] : border.end[side],
+                                               reach.at(point), 4.0 / layout_.points[point].quarters});
+    }
+}
+
+Eigen::Vector2d LayoutSamples::regularised(int chart, const Eigen::Vector2d& x) const {
+  for (const auto& corner : singular_[chart]) {
+    const Eigen::Vector2d away = x - corner.at;
+    const double part = away.norm() / corner.reach;
+    if (part > 0 && part < 1)
+      return corner.at + away * std::pow(part, (corner.exponent - 1) * (1 - part) * (1 - part));
+  }
+  return x;
 }
 
 LayoutSamples::Corners LayoutSamples::corners(FaceHandle f) const {
@@ -94,7 +133,7 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
   }
   const auto& piece = layout_.pieceAt(f, x);
   s.chart = piece.chart;
-  s.parameter = Layout::apply(piece.toChart, layout_.scale, x);
+  s.parameter = regularised(piece.chart, Layout::apply(piece.toChart, layout_.scale, x));
   if (vertex) {
     s.point = vertexPoint_[vertex->idx()];
     s.normal = vertexNormal_[vertex->idx()];

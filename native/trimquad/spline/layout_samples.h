@@ -14,8 +14,10 @@ struct LayoutSample : SurfaceSample {
   int chart = 0;
 };
 
-/// Samples of a region that is cut into charts, dense enough for a spline space everywhere, with the
-/// parameters of the grid map; on the true surface where there is one.
+/// Samples of a region that is cut into charts, dense enough for a spline space everywhere, on the true
+/// surface where there is one. Parameters are those of the grid map, but next to singularities, where the map
+/// grows like a power of the distance, which no spline with a tangent plane can follow: there they are moved
+/// towards or away from the singularity until they grow in proportion.
 class LayoutSamples {
  public:
   LayoutSamples(const Region& region, const GridMap& map, const Layout& layout, const Progress& progress);
@@ -33,12 +35,21 @@ class LayoutSamples {
   Corners corners(FaceHandle f) const;
   int latticeOrder(FaceHandle f, const JoinedSpace& space) const;
   LayoutSample sample(FaceHandle f, const Eigen::Vector3d& barycentric) const;
+  void collectSingularCorners();
+  Eigen::Vector2d regularised(int chart, const Eigen::Vector2d& x) const;
 
   const Region& region_;
   const GridMap& map_;
   const Layout& layout_;
+  /// A corner of a chart in a singularity.
+  struct SingularCorner {
+    Eigen::Vector2d at;
+    double reach;     ///< quads
+    double exponent;  ///< the surface's distance from the singularity grows like this power of the map's
+  };
   double area_ = 0, extent_ = 0;
-  std::vector<int> order_;  ///< by triangle
+  std::vector<std::vector<SingularCorner>> singular_;  ///< by chart
+  std::vector<int> order_;                             ///< by triangle
   std::vector<std::array<int, 3>> cells_;
   std::vector<Eigen::Vector3d> vertexPoint_, vertexNormal_;  ///< on the true surface
 };
