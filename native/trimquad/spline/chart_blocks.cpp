@@ -11,7 +11,7 @@ namespace trimquad {
 namespace {
 
 /// Part of its bounding box that a chart of several blocks fills at least: what lies beyond costs poles.
-constexpr double kSmallestFill = 0.5;
+constexpr double kSmallestFill = 0.9;
 
 class Cuts {
  public:
