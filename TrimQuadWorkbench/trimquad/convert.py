@@ -33,9 +33,9 @@ class RegionResult:
 
     def __init__(self, region):
         self.name = region.name
-        self.region = region
+        self.region = self.mapped_region = region
         self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
-        self.grid = self.quads = self.fitted = self.error = None
+        self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.refits = self.field_edits = 0
         self.seconds = {}
 
@@ -229,11 +229,40 @@ def _read_field(result, thing):
 def _map_regions(result, progress):
     progress.region_count = max(1, len(result.regions))
     with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
-        for done in [pool.submit(_map_region, r, result, progress) for r in result.regions]:
+        for done in [pool.submit(_map_region, r, k, result, progress) for k, r in enumerate(result.regions)]:
             done.result()
+    for item in result.regions:
+        given_up = item.field and item.region.features["aligned_edges"] - item.field.aligned_edges
+        if given_up:
+            result.warnings.append(
+                f"region '{item.name}': {given_up} aligned edges meet others at too sharp an angle to be followed as well"
+            )
 
 
-def _map_region(item, result, progress):
+def _grid_map(item, index, result, run):
+    """By the direct route, the constructive one, or the first and where it fails the other."""
+    native = load()
+    route = result.options.route
+    if route != "reembed":
+        try:
+            item.grid = run("optimize", native.grid_map, item.seamless, item.tmesh, item.quantization)
+            item.embedding = {"route": "direct", "inserted_vertices": 0, "collapses": 0, "splits": 0}
+            return
+        except Error as error:
+            if route == "direct" or error.kind != "stage":
+                raise
+    # The model's region gets the refined mesh; field and seamless map are of the one before.
+    item.region = native.copy_region(item.region)
+    item.grid, seconds, counters = run(
+        "reembed", native.reembed, result.model, index, item.seamless, item.tmesh, item.quantization
+    )
+    item.mapped_region = result.model.regions[index]
+    item.embedding = {"route": "reembedded", **counters}
+    item.seconds["optimize"] = item.seconds["reembed"] - seconds
+    item.seconds["reembed"] = seconds
+
+
+def _map_region(item, index, result, progress):
     """The stages of one region in their order; the first Error ends it and is kept in the region."""
     native = load()
     options = result.options
@@ -252,11 +281,11 @@ def _map_region(item, result, progress):
         item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
         item.tmesh = run("partition", native.partition, item.seamless)
         item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
-        item.grid = run("optimize", native.grid_map, item.seamless, item.tmesh, item.quantization)
-        item.quads = run("extract", native.extract_quads, item.grid, item.region)
+        _grid_map(item, index, result, run)
+        item.quads = run("extract", native.extract_quads, item.grid, item.mapped_region)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
             item.fitted = run(
-                "fit", native.fit_surface, item.region, item.grid, result.fit_tolerance, options.degree
+                "fit", native.fit_surface, item.mapped_region, item.grid, result.fit_tolerance, options.degree
             )
     except Error as error:
         if error.kind == "cancelled":
@@ -283,7 +312,7 @@ def _refit_faulty(result, progress):
                 raise Error("stage", "fit", advice, item.name)
             with progress.stage("fit", item.name) as native_progress:
                 item.fitted = native.fit_surface(
-                    item.region, item.grid, tolerance, result.options.degree, native_progress
+                    item.mapped_region, item.grid, tolerance, result.options.degree, native_progress
                 )
         except Error as error:
             if error.kind == "cancelled":

@@ -26,6 +26,7 @@ py::array_t<double> rowsOf(const std::vector<Eigen::Vector3d>& vectors) {
 
 void bindField(py::module_& m) {
   py::class_<CrossField>(m, "CrossField")
+      .def_property_readonly("aligned_edges", [](const CrossField& field) { return field.aligned.size(); })
       .def_readonly("loop_turns", &CrossField::loopTurns,
                     "quarter turns of each boundary loop against the field")
       .def_property_readonly(

@@ -1,5 +1,12 @@
+#include <pybind11/stl.h>
+
+#include <chrono>
+
 #include "bindings.h"
+#include "trimquad/embed/embed.h"
 #include "trimquad/gridmap/grid_map.h"
+#include "trimquad/gridmap/optimized_patch_map.h"
+#include "trimquad/mesh/region.h"
 #include "trimquad/mesh/write_obj.h"
 
 namespace py = pybind11;
@@ -12,6 +19,29 @@ void bindGridMap(py::module_& m) {
       .def_property_readonly("arrays", [](const GridMap& map) { return arraysOf(map); })
       .def(
           "to_obj", [](const GridMap& map) { return writeObj(map); }, Released());
+  m.def(
+      "reembed",
+      [](Model& model, int index, const SeamlessMap& seamless, const TMesh& tmesh,
+         const Quantization& quantization, const Progress& progress) {
+        const auto started = std::chrono::steady_clock::now();
+        const PatchMap patches =
+            constructiveMap(seamless, embed(seamless, tmesh, quantization, progress), progress);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - started;
+        GridMap map = optimizedPatchMap(seamless, patches, progress);
+        Region& region = model.regions.at(std::size_t(index));
+        region = refinedRegion(region, model.curves, patches.embedded.surface);
+        const auto& counters = patches.embedded.counters;
+        return std::make_tuple(std::move(map), seconds.count(),
+                               std::map<std::string, int>{{"inserted_vertices", counters.inserted},
+                                                          {"collapses", counters.zeroArcCollapses +
+                                                                            counters.patchCollapses +
+                                                                            counters.patchSplits},
+                                                          {"splits", counters.splits + patches.splits}});
+      },
+      py::arg("model"), py::arg("index"), py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
+      py::arg("progress"), Released(),
+      "The constructive route: the grid map, seconds until its optimisation, counters. The region of the model "
+      "gets the refined mesh that the map is of.");
   m.def("grid_map", &gridMap, py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
         py::arg("progress"), Released());
 }

@@ -148,6 +148,7 @@ py::list curvesOf(const Model& model) {
 }
 
 void bindRegion(py::module_& m) {
+  m.def("copy_region", [](const Region& region) { return region; }, py::arg("region"));
   py::class_<Region>(m, "Region")
       .def_readonly("name", &Region::name)
       .def_property_readonly("triangles", [](const Region& region) { return region.mesh.n_faces(); })

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
 #include "trimquad/base/error.h"
 #include "trimquad/base/sparse_solver.h"
+#include "trimquad/field/aligned_sectors.h"
 #include "trimquad/field/angle_solve.h"
 #include "trimquad/field/dual_weights.h"
 #include "trimquad/field/field_topology.h"
@@ -25,9 +27,9 @@ constexpr double kQuarter = std::numbers::pi / 2;
 /// Osting 2019)
 class CrossDiffusion {
  public:
-  CrossDiffusion(const Region& region, const Transport& transport, const FieldGuidance& guidance,
-                 double guidanceReach)
-      : mesh_(region.mesh), transport_(transport), weight_(dualWeights(region.mesh)) {
+  CrossDiffusion(const SurfaceMesh& mesh, const std::vector<EdgeHandle>& aligned, const Transport& transport,
+                 const FieldGuidance& guidance, double guidanceReach)
+      : mesh_(mesh), transport_(transport), weight_(dualWeights(mesh)) {
     const int faces = int(mesh_.n_faces());
     const double area = surfaceArea(mesh_);
     mass_.resize(faces);
@@ -39,7 +41,7 @@ class CrossDiffusion {
       pull_[f.idx()] = guidanceReach * guidanceReach * mass_[f.idx()] * guidance.weight[f.idx()];
       wish_[f.idx()] = cross(f, guidance.direction[f.idx()]);
     }
-    fix(region.aligned);
+    fix(aligned);
     position_.assign(faces, -1);
     for (int f = 0; f < faces; ++f)
       if (!fixed_[f]) position_[f] = free_++;
@@ -166,9 +168,8 @@ class CrossDiffusion {
 /// Turns the directions so that the field is smoothest while its matchings, and so its singularities, stay:
 /// least squares of the turns across the edges and of the turns away from the guidance, in real angles. It
 /// spreads the turn around a singularity evenly.
-void relaxAngles(const Region& region, const Transport& transport, const CrossDiffusion& diffusion,
+void relaxAngles(const SurfaceMesh& mesh, const Transport& transport, const CrossDiffusion& diffusion,
                  CrossField& field) {
-  const auto& mesh = region.mesh;
   constexpr double kFixed = 1e8;  // beside weights of order 1
   auto difference = transported(mesh, transport);
   for (const auto e : mesh.edges())
@@ -206,6 +207,37 @@ double change(const std::vector<Complex>& z, const std::vector<Complex>& before)
   return std::sqrt(sum / double(z.size()));
 }
 
+CrossField smoothField(const SurfaceMesh& mesh, const std::vector<EdgeHandle>& aligned,
+                       const Transport& transport, const FieldGuidance& guidance, double guidanceReach,
+                       const Progress& progress) {
+  CrossDiffusion diffusion(mesh, aligned, transport, guidance, guidanceReach);
+  std::vector<Complex> z = diffusion.start();
+  // Long steps first, which leave only the singularities that the whole surface asks for; shorter ones then
+  // bring them to their places.
+  constexpr double kTimes[] = {0.1, 0.01, 0.001};
+  constexpr int kSteps = 8;
+  constexpr double kSettled = 0.02;
+  for (const double time : kTimes) {
+    diffusion.prepare(time);
+    for (int step = 0; step < kSteps; ++step) {
+      progress.check();
+      auto next = diffusion.step(z);
+      normalize(next, z);
+      const double moved = change(next, z);
+      z = std::move(next);
+      if (moved < kSettled) break;
+    }
+  }
+  CrossField field;
+  field.aligned = aligned;
+  field.direction.resize(mesh.n_faces());
+  for (const auto f : mesh.faces())
+    field.direction[f.idx()] = transport.direction(f, std::arg(z[f.idx()]) / 4);
+  settleTopology(mesh, transport, field);
+  relaxAngles(mesh, transport, diffusion, field);
+  return field;
+}
+
 }  // namespace
 
 void requireArea(const SurfaceMesh& mesh) {
@@ -227,31 +259,16 @@ CrossField crossField(const Region& region, const FieldGuidance& guidance, doubl
   const auto& mesh = region.mesh;
   requireArea(mesh);
   const Transport transport = principalTransport(mesh);
-  CrossDiffusion diffusion(region, transport, guidance, guidanceReach);
-  std::vector<Complex> z = diffusion.start();
-  // Long steps first, which leave only the singularities that the whole surface asks for; shorter ones then
-  // bring them to their places.
-  constexpr double kTimes[] = {0.1, 0.01, 0.001};
-  constexpr int kSteps = 8;
-  constexpr double kSettled = 0.02;
-  for (const double time : kTimes) {
-    diffusion.prepare(time);
-    for (int step = 0; step < kSteps; ++step) {
-      progress.check();
-      auto next = diffusion.step(z);
-      normalize(next, z);
-      const double moved = change(next, z);
-      z = std::move(next);
-      if (moved < kSettled) break;
-    }
+  std::vector<EdgeHandle> aligned = region.aligned;
+  for (;;) {
+    CrossField field = smoothField(mesh, aligned, transport, guidance, guidanceReach, progress);
+    const auto dropped = collapsingEdges(mesh, transport, field);
+    if (dropped.empty()) return field;
+    std::vector<EdgeHandle> rest;
+    std::set_difference(aligned.begin(), aligned.end(), dropped.begin(), dropped.end(),
+                        std::back_inserter(rest));
+    aligned = std::move(rest);
   }
-  CrossField field;
-  field.direction.resize(mesh.n_faces());
-  for (const auto f : mesh.faces())
-    field.direction[f.idx()] = transport.direction(f, std::arg(z[f.idx()]) / 4);
-  settleTopology(mesh, transport, field);
-  relaxAngles(region, transport, diffusion, field);
-  return field;
 }
 
 }  // namespace trimquad

@@ -19,6 +19,9 @@ struct CrossField {
   /// for an outer loop of a plane region, -4 for a hole in it, 0 for an end of a tube.
   /// The turns of all loops and all indices add up to four times the Euler characteristic.
   std::vector<int> loopTurns;
+  /// Aligned edges of the region that the field is parallel to: all but those between which a map would
+  /// collapse. Ascending.
+  std::vector<EdgeHandle> aligned;
 };
 
 /// Directions that a field should follow, up to quarter turns.

@@ -39,10 +39,10 @@ Eigen::Vector2d alongSide(const SurfaceMesh& mesh, const MapTarget& target, Half
 }
 
 /// The sides of triangles along aligned edges, with the coordinate that the target keeps constant there.
-std::vector<AlignedSide> alignedSides(const Region& region, const MapTarget& target) {
-  const auto& mesh = region.mesh;
+std::vector<AlignedSide> alignedSides(const SurfaceMesh& mesh, const std::vector<EdgeHandle>& aligned,
+                                      const MapTarget& target) {
   std::vector<AlignedSide> sides;
-  for (const auto e : region.aligned)
+  for (const auto e : aligned)
     for (int k = 0; k < 2; ++k) {
       const auto side = mesh.halfedge_handle(e, k);
       if (mesh.is_boundary(side)) continue;
@@ -116,7 +116,7 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   const auto scale = conformalScale(mesh, field);
   for (size_t f = 0; f < scale.size(); ++f)
     for (auto& corner : map.conformalTarget[f]) corner *= scale[f];
-  map.alignedSides = alignedSides(region, map.target);
+  map.alignedSides = alignedSides(mesh, field.aligned, map.target);
   map.index = field.index;
   SeamConstraints constraints;
   constraints.aligned = map.alignedSides;
@@ -134,7 +134,7 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
   // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
   // A tube that is not becomes a plane region, whose map cannot follow the field.
-  if ((map.seams.outerLoop || map.seams.tube) && region.aligned.empty() && overlaps(map, map.seams)) {
+  if ((map.seams.outerLoop || map.seams.tube) && field.aligned.empty() && overlaps(map, map.seams)) {
     const double follow = map.seams.tube ? 0.0 : kFollow;
     map.counters.scaffolded = true;
     map.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
@@ -143,7 +143,7 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
         oneToOneMap(mesh, map.seams, map.target, plane, follow, map.counters, progress);
     static_cast<Parametrization&>(map) = exactMap(mesh, plane, apart, false);
   }
-  map.aligned = region.aligned;
+  map.aligned = field.aligned;
   map.featurePoints = region.featurePoints;
   verify(map, false);
   return map;

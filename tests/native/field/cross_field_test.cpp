@@ -122,6 +122,47 @@ TEST(CrossField, twoAlignedEdgesOfOneTriangleAreRefused) {
   EXPECT_THROW(fieldOf(r), Error);
 }
 
+TEST(CrossField, givesUpAnAlignedEdgeThatMeetsOthersTooSharply) {
+  // A fan of 12 triangles around the middle: a straight line through it, and a branch 30 degrees off.
+  TriangleSoup soup;
+  soup.points.emplace_back(0, 0, 0);
+  for (int ring = 1; ring <= 3; ++ring)
+    for (int k = 0; k < 12; ++k)
+      soup.points.emplace_back(ring * std::cos(k * M_PI / 6), ring * std::sin(k * M_PI / 6), 0);
+  const auto at = [](int ring, int k) { return 1 + 12 * (ring - 1) + k % 12; };
+  for (int k = 0; k < 12; ++k) {
+    soup.triangles.push_back({0, at(1, k), at(1, k + 1)});
+    for (int ring = 1; ring < 3; ++ring) {
+      soup.triangles.push_back({at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)});
+      soup.triangles.push_back({at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)});
+    }
+  }
+  Region r = sample::region(soup);
+  const auto edge = [&](int a, int b) {
+    return r.mesh.edge_handle(r.mesh.find_halfedge(VertexHandle(a), VertexHandle(b)));
+  };
+  // The second ring of the branch keeps clear of the line, so that no triangle has two aligned edges.
+  r.aligned = {edge(0, at(1, 0)), edge(0, at(1, 6)), edge(0, at(1, 2)), edge(at(1, 2), at(2, 2))};
+  std::sort(r.aligned.begin(), r.aligned.end());
+  // 60 degrees are a quarter turn, and all edges are followed; 30 degrees are none.
+  EXPECT_EQ(fieldOf(r).aligned, r.aligned);
+  FieldGuidance none{std::vector<Eigen::Vector3d>(r.mesh.n_faces(), Eigen::Vector3d::UnitX()),
+                     std::vector<double>(r.mesh.n_faces(), 0.0)};
+  for (auto& p : soup.points)
+    if (p.head<2>().norm() > 0) {
+      const double angle = std::atan2(p.y(), p.x()), radius = p.norm();
+      const double narrow =
+          angle > 0 ? (angle < M_PI / 3 + 0.01 ? angle / 3 : M_PI / 9 + (angle - M_PI / 3) * 4 / 3) : angle;
+      p = {radius * std::cos(narrow), radius * std::sin(narrow), 0};
+    }
+  Region sharp = sample::region(soup);
+  sharp.aligned = r.aligned;
+  const auto followed = crossField(sharp, none, 0, Progress()).aligned;
+  auto expected = r.aligned;
+  std::erase(expected, edge(0, at(1, 2)));
+  EXPECT_EQ(followed, expected);
+}
+
 TEST(CrossField, followsGivenDirections) {
   const Region r = sample::region(sample::sheet(20, 20, sample::flat));
   FieldGuidance guidance;

@@ -1,0 +1,56 @@
+#include "trimquad/gridmap/optimized_patch_map.h"
+
+#include "trimquad/base/error.h"
+#include "trimquad/gridmap/integer_charts.h"
+#include "trimquad/seamless/newton.h"
+#include "trimquad/seamless/solve_map.h"
+
+namespace trimquad {
+namespace {
+
+constexpr int kMostSteps = 300;
+constexpr double kConverged =
+    1e-3;  ///< relative decrease of the energy in a step, at which optimisation ends
+
+Eigen::VectorXd coordinatesOf(const IntegerCharts& charts, const SeamBasis& basis) {
+  Eigen::VectorXd x(basis.basis().variableCount());
+  for (std::size_t b = 0; b < charts.constraints.translations.size(); ++b)
+    for (const int axis : {0, 1})
+      x[basis.translation(int(b), axis)] = *charts.constraints.translations[b][axis];
+  for (const auto h : charts.map.mesh.halfedges()) {
+    if (charts.map.mesh.is_boundary(h)) continue;
+    for (const int axis : {0, 1})
+      x[basis.coordinate(basis.wedge(h), axis)] = charts.map.scale.toQuads(charts.map.from(h)[axis]);
+  }
+  for (const auto& place : charts.constraints.grid.places)
+    for (const int axis : {0, 1})
+      x[basis.gridPoint(place.point, axis)] = x[basis.coordinate(basis.wedge(place.corner), axis)];
+  return x;
+}
+
+}  // namespace
+
+GridMap optimizedPatchMap(const SeamlessMap& seamless, const PatchMap& patches, const Progress& progress) {
+  const IntegerCharts charts = integerCharts(seamless, patches);
+  const SeamBasis basis(charts.map.mesh, charts.seams, charts.constraints);
+  const MapEnergy energy(charts.map.mesh, charts.target, basis);
+  Eigen::VectorXd z = basis.basis().restrict(coordinatesOf(charts, basis));
+  TRIMQUAD_ASSERT(energy.flipped(energy.coordinates(z)) == 0);
+  GridMap result;
+  result.counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
+  SparseSolver solver("optimize");
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double decrease = newtonStep(energy, basis, symmetricDirichlet, kFollow, true, solver, z);
+    ++result.counters.iterations;
+    progress.report(double(i) / kMostSteps);
+    if (decrease < kConverged) break;
+  }
+  result.counters.distortionEnd = energy.meanSymmetricDirichlet(energy.coordinates(z));
+  static_cast<Parametrization&>(result) = exactMap(charts.map.mesh, basis, z, true);
+  result.aligned = charts.map.aligned;
+  result.featurePoints = charts.map.featurePoints;
+  verify(result, true);
+  return result;
+}
+
+}  // namespace trimquad
