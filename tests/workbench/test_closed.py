@@ -207,6 +207,24 @@ def test_the_optimal_quantization_is_proven_and_no_worse():
     assert best["objective"] <= worse["objective"] + 1e-9
 
 
+@pytest.mark.parametrize("name", ["boxes", "ball", "torus"])
+def test_the_constructive_route_gives_an_integer_grid_map_too(name, tmp_path):
+    options = trimquad.Options(quads=150, features="align", route="reembed", write=["gridmap", "quads"])
+    result = trimquad.convert(CLOSED[name][0](), options)
+    assert [str(r.error) for r in result.failed] == []
+    (region,) = result.report["regions"]
+    assert region["embedding"]["route"] == "reembedded"
+    result.write(str(tmp_path))
+    exact = ExactMap(tmp_path / "gridmap.obj")
+    for _, ((ax, ay), (bx, by), (cx, cy)) in exact.triangles:
+        assert (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) > 0
+    assert all(x.denominator == 1 for _, translation in exact.transitions().values() for x in translation)
+    assert sum(q != 0 for q in exact.turning().values()) == region["singularities"]["count"]
+    faces = faces_of(tmp_path / "quads.obj")
+    valence = Counter(v for face in faces for v in face)
+    assert sum(4 - n for n in valence.values()) == 4 * CLOSED[name][1]
+
+
 def test_the_texture_is_the_grid_map_on_the_triangles(tmp_path):
     result = trimquad.convert(ball(), trimquad.Options(quads=100, write=["gridmap", "texture"]))
     assert result.write(str(tmp_path)) == ["gridmap.obj", "texture.mtl", "texture.obj", "texture.png"]
