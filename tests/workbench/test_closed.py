@@ -37,9 +37,9 @@ def tee():
 CLOSED = {"boxes": (boxes, 2), "ball": (ball, 2), "torus": (torus, 0), "tee": (tee, -2)}
 
 
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    """Output folder of a closed part's conversion by the command line, done once."""
+@pytest.fixture(scope="module", params=["auto", "reembed"])
+def written(request, tmp_path_factory):
+    """Output folder of a closed part's conversion by the command line, done once for either route of the grid map."""
     done = {}
 
     def write(name):
@@ -48,7 +48,7 @@ def written(tmp_path_factory):
             CLOSED[name][0]().exportBrep(str(folder / "part.brep"))
             out = folder / "out"
             status = cli.main(["convert", str(folder / "part.brep"), "--out", str(out), "--quads", "400", "--features",
-                               "align", "--write", "seamless,tmesh,gridmap,quads,report", "--quiet"])
+                               "align", "--route", request.param, "--write", "seamless,tmesh,gridmap,quads,report", "--quiet"])
             assert status == 0
             done[name] = out
         return done[name]

@@ -133,4 +133,13 @@ Chart chart(const GridMap& map) {
   return chart;
 }
 
+std::optional<Chart> singleChart(const GridMap& map) {
+  try {
+    return chart(map);
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::Stage) throw;
+    return {};
+  }
+}
+
 }  // namespace trimquad

@@ -20,4 +20,7 @@ struct Chart {
 /// test of the boundary loops, modulo the period).
 Chart chart(const GridMap& map);
 
+/// The same, empty instead of an error.
+std::optional<Chart> singleChart(const GridMap& map);
+
 }  // namespace trimquad

@@ -81,4 +81,38 @@ CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*
   return corner;
 }
 
+double placeOnLine(const Eigen::Vector3d& p, const SheetLine& line, double guess, const Sheet* other,
+                   const Eigen::Vector2d& otherGuess, double reach) {
+  const auto tangent = [&](const SplineSurface::Jet& jet) -> Eigen::Vector3d {
+    return jet.su * line.along[0] + jet.sv * line.along[1];
+  };
+  double s = guess;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const auto jet = line.sheet->jet(line.at(s));
+    const Eigen::Vector3d t = tangent(jet);
+    const double move = (p - jet.s).dot(t) / t.squaredNorm();
+    s += move;
+    if (std::abs(move) < 1e-14) break;
+  }
+  if (!other) return s;
+  const double nearest = s;
+  Eigen::Vector2d x = other->footPoint(line.sheet->jet(line.at(s)).s, otherGuess);
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const auto jet = line.sheet->jet(line.at(s)), there = other->jet(x);
+    Eigen::Matrix3d m;
+    m << tangent(jet), -there.su, -there.sv;
+    const Eigen::Vector3d move = m.partialPivLu().solve(there.s - jet.s);
+    if (!move.allFinite() || std::abs(tangent(jet).normalized().dot(normal(there))) < kSmallestVolume)
+      return nearest;
+    s += move[0];
+    x += move.tail<2>();
+    if (!other->holds(x) || !line.sheet->holds(line.at(s))) return nearest;
+    if (move.cwiseAbs().maxCoeff() < 1e-14) break;
+  }
+  const Eigen::Vector3d found = line.sheet->jet(line.at(s)).s;
+  return (found - other->jet(x).s).norm() < 1e-12 * std::max(1.0, p.norm()) && (found - p).norm() < reach
+             ? s
+             : nearest;
+}
+
 }  // namespace trimquad

@@ -21,4 +21,16 @@ struct CornerPoint {
 CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
                         const std::vector<Eigen::Vector2d>& guess, double reach);
 
+/// A straight line on a sheet, in quads along it from `start`.
+struct SheetLine {
+  const Sheet* sheet;
+  Eigen::Vector2d start, along;  ///< along: a unit vector
+  Eigen::Vector2d at(double s) const { return start + s * along; }
+};
+
+/// Where along a line, near `guess`, it meets the other sheet, or comes closest to `p` where there is none or
+/// they do not meet within `reach` of p.
+double placeOnLine(const Eigen::Vector3d& p, const SheetLine& line, double guess, const Sheet* other,
+                   const Eigen::Vector2d& otherGuess, double reach);
+
 }  // namespace trimquad

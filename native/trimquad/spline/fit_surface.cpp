@@ -7,6 +7,7 @@
 #include <string>
 
 #include "trimquad/base/error.h"
+#include "trimquad/spline/fit_layout.h"
 #include "trimquad/spline/knot_refinement.h"
 #include "trimquad/spline/spline_space.h"
 #include "trimquad/spline/surface_samples.h"
@@ -350,7 +351,11 @@ FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOpti
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw inputError("fit", "the tolerance must be a positive number");
   if (options.degree < 2 || options.degree > 5) throw inputError("fit", "the degree must be 2, 3, 4 or 5");
-  Chart unrolled = chart(map);
+  auto single = singleChart(map);
+  if (!single || std::any_of(map.aligned.begin(), map.aligned.end(),
+                             [&](EdgeHandle e) { return !map.mesh.is_boundary(e); }))
+    return fitLayout(region, map, layout(map, progress), options, progress);
+  Chart unrolled = std::move(*single);
   const double seam = unrolled.period ? unrolled.scale.toQuads(seamOf(map, unrolled)) : 0;
   FittedSurface fitted = Fit(region, map, options, unrolled, seam, progress).run();
   fitted.chart = std::move(unrolled);

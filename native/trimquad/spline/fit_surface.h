@@ -3,6 +3,7 @@
 #include "trimquad/base/progress.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/spline/chart.h"
+#include "trimquad/spline/layout.h"
 #include "trimquad/spline/spline_geometry.h"
 
 namespace trimquad {
@@ -12,10 +13,13 @@ struct FitOptions {
   int degree = 3;           ///< 2..5
 };
 
-/// A B-spline surface through one region, not trimmed yet.
+/// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else
+/// one for each chart of its layout.
 struct FittedSurface {
   Chart chart;
   SplineSurface surface;
+  std::optional<Layout> layout;  ///< where there are several charts; then `chart` and `surface` are empty
+  std::vector<SplineSurface> surfaces;        ///< by chart of the layout
   double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
   int rounds = 0;
 };

@@ -10,13 +10,15 @@ namespace {
 constexpr double kTakesPart = 0.4;
 
 /// By knot rectangle: how much the residual varies along u and v, squared, for a step of one interval.
-std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space, const SurfaceSamples& samples) {
+template <class Difference>
+std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space,
+                                              const std::vector<SurfaceSample>& samples,
+                                              const std::vector<std::array<int, 3>>& cells,
+                                              const Difference& difference) {
   std::vector<Eigen::Array2d> variation(size_t(space.u.spans()) * space.v.spans(), Eigen::Array2d::Zero());
-  for (const auto& cell : samples.cells()) {
-    const SurfaceSample &p = samples.samples[cell[0]], &q = samples.samples[cell[1]],
-                        &r = samples.samples[cell[2]];
-    const Eigen::Vector2d a = samples.difference(p.parameter, q.parameter),
-                          b = samples.difference(p.parameter, r.parameter);
+  for (const auto& cell : cells) {
+    const SurfaceSample &p = samples[cell[0]], &q = samples[cell[1]], &r = samples[cell[2]];
+    const Eigen::Vector2d a = difference(p.parameter, q.parameter), b = difference(p.parameter, r.parameter);
     const double area = a.x() * b.y() - a.y() * b.x();
     if (!(area > 0)) continue;
     const double da = q.distance - p.distance, db = r.distance - p.distance;
@@ -45,11 +47,8 @@ void halve(SplineLine& line, const std::vector<char>& marked) {
   line.breaks = std::move(breaks);
 }
 
-}  // namespace
-
-bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
-                 const std::vector<Eigen::Vector2d>& failing, double narrowest) {
-  const auto variation = residualVariation(space, samples);
+bool refine(SplineSpace& space, const std::vector<Eigen::Array2d>& variation,
+            const std::vector<Eigen::Vector2d>& failing, double narrowest) {
   std::vector<char> inU(space.u.spans(), 0), inV(space.v.spans(), 0);
   bool any = false;
   for (const auto& x : failing) {
@@ -66,6 +65,36 @@ bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
   halve(space.u, inU);
   halve(space.v, inV);
   return any;
+}
+
+}  // namespace
+
+bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
+                 const std::vector<Eigen::Vector2d>& failing, double narrowest) {
+  const auto difference = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+    return samples.difference(from, to);
+  };
+  return refine(space, residualVariation(space, samples.samples, samples.cells(), difference), failing,
+                narrowest);
+}
+
+bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
+                 const std::vector<std::array<int, 3>>& cells, const std::vector<Eigen::Vector2d>& failing,
+                 double narrowest) {
+  const auto difference = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to) -> Eigen::Vector2d {
+    return to - from;
+  };
+  return refine(space, residualVariation(space, samples, cells, difference), failing, narrowest);
+}
+
+bool halveInterval(SplineSpace& space, int axis, double at, double narrowest) {
+  SplineLine& line = axis == 0 ? space.u : space.v;
+  const int span = line.spanOf(at);
+  if (!splits(line, span, narrowest)) return false;
+  std::vector<char> marked(line.spans(), 0);
+  marked[span] = 1;
+  halve(line, marked);
+  return true;
 }
 
 }  // namespace trimquad

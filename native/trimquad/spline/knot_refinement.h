@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "trimquad/spline/surface_samples.h"
@@ -11,5 +12,13 @@ namespace trimquad {
 /// false where no interval could be halved because it would become narrower than `narrowest`.
 bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
                  const std::vector<Eigen::Vector2d>& failing, double narrowest);
+
+/// The same from any samples of the space and small triangles between them, by index.
+bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
+                 const std::vector<std::array<int, 3>>& cells, const std::vector<Eigen::Vector2d>& failing,
+                 double narrowest);
+
+/// Halves the interval that holds `at` on one axis (0: u), unless it would become narrower than `narrowest`.
+bool halveInterval(SplineSpace& space, int axis, double at, double narrowest);
 
 }  // namespace trimquad

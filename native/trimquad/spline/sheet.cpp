@@ -20,7 +20,7 @@ Eigen::Vector2d Sheet::footPoint(const Eigen::Vector3d& p, const Eigen::Vector2d
 }
 
 bool Sheet::holds(const Eigen::Vector2d& x) const {
-  constexpr double rounding = 1e-9;
+  const double rounding = 1e-9 + slack;
   return (period || (x[0] >= surface.firstU() - rounding && x[0] <= surface.lastU() + rounding)) &&
          x[1] >= surface.firstV() - rounding && x[1] <= surface.lastV() + rounding;
 }

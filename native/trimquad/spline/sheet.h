@@ -13,6 +13,9 @@ namespace trimquad {
 struct Sheet {
   SplineSurface surface;
   std::optional<double> period;  ///< of u, in quads
+  /// How far beyond its domain the surface may be evaluated on the way to a point on it (its polynomials go
+  /// on there), quads: where it ends at a border with another sheet of the region.
+  double slack = 0;
 
   SplineSurface::Jet jet(const Eigen::Vector2d& x) const;
   /// The foot point of `p` near `guess`, unwrapped.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "trimquad/base/error.h"
 #include "trimquad/spline/block_cholesky.h"
 
 namespace trimquad {
@@ -56,38 +57,6 @@ struct LocalUnknowns {
   }
 };
 
-/// integral over one span of the k-th derivatives' products, for k = 0, 1, 2. Gauss-Legendre, exact.
-std::array<Eigen::MatrixXd, 3> spanProducts(const SplineLine& line, const std::vector<double>& knots,
-                                            int span) {
-  const int n = line.degree + 1;
-  // Nodes of the n-point rule by Newton on the Legendre polynomial.
-  std::array<Eigen::MatrixXd, 3> product;
-  for (auto& m : product) m = Eigen::MatrixXd::Zero(n, n);
-  BasisFunctions basis;
-  for (int q = 0; q < n; ++q) {
-    double x = std::cos(M_PI * (q + 0.75) / (n + 0.5)), slope = 1;
-    for (int step = 0; step < 50; ++step) {
-      double p0 = 1, p1 = x;
-      for (int k = 2; k <= n; ++k) {
-        const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
-        p0 = p1;
-        p1 = p2;
-      }
-      slope = n * (x * p1 - p0) / (x * x - 1);
-      const double move = p1 / slope;
-      x -= move;
-      if (std::abs(move) < 1e-15) break;
-    }
-    const double weight = line.width(span) / ((1 - x * x) * slope * slope);
-    const double t = 0.5 * (line.breaks[span] + line.breaks[span + 1] + x * line.width(span));
-    basisFunctions(knots, line.degree, t, 2, basis);
-    for (int k = 0; k < 3; ++k)
-      for (int a = 0; a < n; ++a)
-        for (int b = 0; b < n; ++b) product[k](a, b) += weight * basis.value[k][a] * basis.value[k][b];
-  }
-  return product;
-}
-
 /// Poles of one row, as the clamped curve over one period with its ends equal bit by bit.
 SpaceCurve clampedPeriod(const SplineLine& line, const std::vector<Eigen::Vector3d>& periodic) {
   // One span more on both sides of the period, so that its ends are inner knots that can be made full.
@@ -130,6 +99,38 @@ SplineSurface surfaceOf(const SplineSpace& space, const Numbering& number, const
 
 }  // namespace
 
+// By Gauss-Legendre quadrature.
+std::array<Eigen::MatrixXd, 3> spanProducts(const SplineLine& line, const std::vector<double>& knots,
+                                            int span) {
+  const int n = line.degree + 1;
+  // Nodes of the n-point rule by Newton on the Legendre polynomial.
+  std::array<Eigen::MatrixXd, 3> product;
+  for (auto& m : product) m = Eigen::MatrixXd::Zero(n, n);
+  BasisFunctions basis;
+  for (int q = 0; q < n; ++q) {
+    double x = std::cos(M_PI * (q + 0.75) / (n + 0.5)), slope = 1;
+    for (int step = 0; step < 50; ++step) {
+      double p0 = 1, p1 = x;
+      for (int k = 2; k <= n; ++k) {
+        const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
+        p0 = p1;
+        p1 = p2;
+      }
+      slope = n * (x * p1 - p0) / (x * x - 1);
+      const double move = p1 / slope;
+      x -= move;
+      if (std::abs(move) < 1e-15) break;
+    }
+    const double weight = line.width(span) / ((1 - x * x) * slope * slope);
+    const double t = 0.5 * (line.breaks[span] + line.breaks[span + 1] + x * line.width(span));
+    basisFunctions(knots, line.degree, t, 2, basis);
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < n; ++a)
+        for (int b = 0; b < n; ++b) product[k](a, b) += weight * basis.value[k][a] * basis.value[k][b];
+  }
+  return product;
+}
+
 int SplineLine::spanOf(double t) const {
   return int(std::upper_bound(breaks.begin() + 1, breaks.end() - 1, t) - breaks.begin()) - 1;
 }
@@ -149,18 +150,13 @@ std::vector<double> SplineLine::knots() const {
   return result;
 }
 
-std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>& data,
-                                                       const Fairness& fairness,
-                                                       const Progress& progress) const {
-  const Numbering number(*this);
-  BlockCholesky matrix(poles(), number.blockSize);
-  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(poles(), 3);
+/// Calls emit(span in u, span in v, normal matrix, right-hand side) for every knot rectangle; local unknown
+/// (a, b) has the number a + (degreeU + 1) * b.
+template <class Emit>
+void SplineSpace::forEachRectangle(const std::vector<Datum>& data, const Fairness& fairness,
+                                   const Eigen::Vector3d& middle, const Progress* progress,
+                                   const Emit& emit) const {
   const auto knotsU = u.knots(), knotsV = v.knots();
-
-  // Rounding is relative to the coordinates, so they are taken from the middle of the data.
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const auto& d : data) middle += d.point / double(data.size());
-
   // Data by knot rectangle, so that each one's products are summed before they go to the matrix.
   std::vector<std::pair<int, int>> order(data.size());
   for (int i = 0; i < int(data.size()); ++i)
@@ -172,14 +168,13 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
   for (int j = 0; j < v.spans(); ++j) productsV.push_back(spanProducts(v, knotsV, j));
 
   const int nu = u.degree + 1, nv = v.degree + 1;
-  Eigen::MatrixXd local(nu * nv, nu * nv);
+  Eigen::MatrixXd local(nu * nv, nu * nv), localRhs(nu * nv, 3);
   Eigen::VectorXd value(nu * nv);
   BasisFunctions bu, bv;
   auto next = order.begin();
   for (int j = 0; j < v.spans(); ++j) {
-    progress.check();
+    if (progress) progress->check();
     for (int i = 0; i < u.spans(); ++i) {
-      const LocalUnknowns unknowns(*this, number, i, j);
       const bool hasData = next != order.end() && next->first == i + u.spans() * j;
       // Below one quad the energy counts by the knot rectangle: it must not hold back knots that follow a
       // crease.
@@ -190,6 +185,7 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
           local.block(b * nu, d * nu, nu, nu) = lambda * (productsV[j][0](b, d) * productsU[i][2] +
                                                           2 * productsV[j][1](b, d) * productsU[i][1] +
                                                           productsV[j][2](b, d) * productsU[i][0]);
+      localRhs.setZero();
       for (; next != order.end() && next->first == i + u.spans() * j; ++next) {
         const Datum& d = data[next->second];
         basisFunctions(knotsU, u.degree, d.parameter[0], 0, bu);
@@ -197,17 +193,50 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
         for (int b = 0; b < nv; ++b)
           for (int a = 0; a < nu; ++a) value[a + nu * b] = bu.value[0][a] * bv.value[0][b];
         local.selfadjointView<Eigen::Lower>().rankUpdate(value, d.weight);
-        for (int x = 0; x < unknowns.count; ++x)
-          rhs.row(unknowns.index[x]) += d.weight * value[x] * (d.point - middle).transpose();
+        for (int x = 0; x < nu * nv; ++x)
+          localRhs.row(x) += d.weight * value[x] * (d.point - middle).transpose();
       }
       local.triangularView<Eigen::StrictlyUpper>() = local.transpose();
-      unknowns.add(local, matrix);
+      emit(i, j, local, localRhs);
     }
   }
+}
+
+std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>& data,
+                                                       const Fairness& fairness,
+                                                       const Progress& progress) const {
+  const Numbering number(*this);
+  BlockCholesky matrix(poles(), number.blockSize);
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(poles(), 3);
+  // Rounding is relative to the coordinates, so they are taken from the middle of the data.
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const auto& d : data) middle += d.point / double(data.size());
+  forEachRectangle(data, fairness, middle, &progress,
+                   [&](int i, int j, const auto& local, const auto& localRhs) {
+                     const LocalUnknowns unknowns(*this, number, i, j);
+                     unknowns.add(local, matrix);
+                     for (int x = 0; x < unknowns.count; ++x) rhs.row(unknowns.index[x]) += localRhs.row(x);
+                   });
   if (!matrix.factorize(progress)) return {};
   matrix.solveInPlace(rhs);
   rhs.rowwise() += middle.transpose();
   return surfaceOf(*this, number, rhs);
+}
+
+void SplineSpace::addNormalEquations(const std::vector<Datum>& data, const Fairness& fairness,
+                                     const Eigen::Vector3d& middle, int offset,
+                                     std::vector<Eigen::Triplet<double>>& entries,
+                                     Eigen::MatrixXd& rhs) const {
+  TRIMQUAD_ASSERT(!u.closed && !v.closed);
+  forEachRectangle(
+      data, fairness, middle, nullptr, [&](int i, int j, const auto& local, const auto& localRhs) {
+        const int nu = u.degree + 1, n = nu * (v.degree + 1);
+        const auto index = [&](int x) { return offset + i + x % nu + u.unknowns() * (j + x / nu); };
+        for (int y = 0; y < n; ++y) {
+          rhs.row(index(y)) += localRhs.row(y);
+          for (int x = y; x < n; ++x) entries.emplace_back(index(x), index(y), local(x, y));
+        }
+      });
 }
 
 }  // namespace trimquad

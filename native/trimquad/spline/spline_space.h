@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/SparseCore>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -25,6 +27,10 @@ struct SplineLine {
   std::vector<double> knots() const;
 };
 
+/// Integral over one span of the products of the k-th derivatives of its functions, for k = 0, 1, 2. Exact.
+std::array<Eigen::MatrixXd, 3> spanProducts(const SplineLine& line, const std::vector<double>& knots,
+                                            int span);
+
 /// A point that the surface is to pass at a given parameter.
 struct Datum {
   Eigen::Vector2d parameter;
@@ -49,6 +55,18 @@ struct SplineSpace {
   /// the data and the fairness do not determine it.
   std::optional<SplineSurface> leastSquares(const std::vector<Datum>& data, const Fairness& fairness,
                                             const Progress& progress) const;
+
+  /// Adds the normal equations of the same minimisation to the lower triangle of a larger system, in which
+  /// unknown (i, j) has the number offset + i + u.unknowns() * j. Not for closed splines.
+  /// \param middle of the points, which the right-hand side is relative to
+  void addNormalEquations(const std::vector<Datum>& data, const Fairness& fairness,
+                          const Eigen::Vector3d& middle, int offset,
+                          std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& rhs) const;
+
+ private:
+  template <class Emit>
+  void forEachRectangle(const std::vector<Datum>& data, const Fairness& fairness,
+                        const Eigen::Vector3d& middle, const Progress* progress, const Emit& emit) const;
 };
 
 }  // namespace trimquad

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
+#include "trimquad/spline/border_edges.h"
 #include "trimquad/spline/corner_point.h"
+#include "trimquad/spline/curve_pieces.h"
 #include "trimquad/spline/trim_curve.h"
 #include "trimquad/spline/trim_loops.h"
 
@@ -14,17 +17,18 @@ namespace trimquad {
 namespace {
 
 constexpr double kSmallestTolerance = 1e-7;
+constexpr double kSheetSlack = 0.5;  ///< quads
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
 
-/// A boundary vertex of a region that is a corner of the model.
+/// A boundary vertex of a chart that is a corner of the model, or a place where charts meet.
 struct CornerUse {
-  int corner, region;
-  VertexHandle vertex;
+  int corner, sheet, vertex;
+  Eigen::Vector3d point;
   Eigen::Vector2d guess;
-  Eigen::Vector2d at;  ///< on the region's sheet
+  Eigen::Vector2d at;  ///< on the sheet
   int group = -1;      ///< which vertex of the result
-  friend auto key(const CornerUse& use) { return std::tuple(use.corner, use.region, use.vertex.idx()); }
+  friend auto key(const CornerUse& use) { return std::tuple(use.corner, use.sheet, use.vertex); }
 };
 
 struct CurveWithSides {
@@ -44,7 +48,7 @@ class ModelTrimmer {
         tolerance_(tolerance),
         reach_(10 * tolerance + 1e-9 * model.diagonal),
         progress_(progress),
-        corners_(model.corners.size()) {
+        corners_(0) {
     makeSheets();
     collectRuns();
     sampleCurves();
@@ -61,40 +65,10 @@ class ModelTrimmer {
   SplineModel trim(const std::vector<double>& closeness) const;
 
  private:
-  void makeSheets() {
-    for (const FittedSurface* fit : fitted_) {
-      auto& sheet = sheets_.emplace_back();
-      if (!fit) continue;
-      sheet.surface = fit->surface;
-      if (fit->surface.closedU) sheet.period = fit->surface.lastU() - fit->surface.firstU();
-    }
-  }
-
-  void collectRuns() {
-    for (int r = 0; r < int(model_.regions.size()); ++r) {
-      auto& runs = runs_.emplace_back();
-      if (fitted_[r]) runs = boundaryRuns(model_, r, fitted_[r]->chart);
-    }
-    const auto tooShort = [&](const BoundaryRun& run) {
-      double length = 0;
-      for (std::size_t i = 0; i + 1 < run.vertices.size(); ++i)
-        length += (model_.regions[run.region].mesh.point(run.vertices[i]) -
-                   model_.regions[run.region].mesh.point(run.vertices[i + 1]))
-                      .norm();
-      return length < kShortestEdge;
-    };
-    for (auto& runs : runs_) {
-      for (const auto& run : runs)
-        if (tooShort(run))
-          corners_.unite(model_.curves[run.curve.index].start.index,
-                         model_.curves[run.curve.index].end.index);
-      std::erase_if(runs, tooShort);
-    }
-    for (const auto& runs : runs_)
-      for (const auto& run : runs)
-        curves_[run.curve.index].sides.push_back(
-            {&sheets_[run.region], &run, model_.regions[run.region].name, {}, {}});
-  }
+  void makeSheets();
+  void collectRuns();
+  void settleSplits(std::vector<CurveSplit>& splits);
+  int sheetOf(const BoundaryRun& run) const { return firstSheet_[run.region] + run.chart; }
 
   void sampleCurves() {
     // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
@@ -102,38 +76,43 @@ class ModelTrimmer {
     for (auto& [id, curve] : curves_) {
       progress_.check();
       if (curve.sides.size() == 2)
-        curve.sampled.push_back(sampleCurve(model_.curves[id], curve.sides, reach));
+        curve.sampled.push_back(sampleCurve((*curvePieces_)[id], curve.sides, reach));
       else
         for (const auto& side : curve.sides)
-          curve.sampled.push_back(sampleCurve(model_.curves[id], {side}, reach));
+          curve.sampled.push_back(sampleCurve((*curvePieces_)[id], {side}, reach));
     }
   }
 
   void placeSeams() {
-    for (int r = 0; r < int(sheets_.size()); ++r) {
-      if (!sheets_[r].period) continue;
+    for (int k = 0; k < int(sheets_.size()); ++k) {
+      if (!sheets_[k].period) continue;
       std::vector<std::vector<Eigen::Vector2d>> boundary;
       for (const auto& [id, curve] : curves_)
-        for (std::size_t k = 0; k < curve.sides.size(); ++k)
-          if (curve.sides[k].run->region == r)
-            boundary.push_back(curve.sides.size() == 2 ? curve.sampled[0].foot[k] : curve.sampled[k].foot[0]);
-      sheets_[r].surface = withSeamAt(sheets_[r].surface, seamPlace(sheets_[r], boundary));
+        for (std::size_t side = 0; side < curve.sides.size(); ++side)
+          if (sheetOf(*curve.sides[side].run) == k)
+            boundary.push_back(curve.sides.size() == 2 ? curve.sampled[0].foot[side]
+                                                       : curve.sampled[side].foot[0]);
+      sheets_[k].surface = withSeamAt(sheets_[k].surface, seamPlace(sheets_[k], boundary));
     }
   }
 
-  int cornerUse(int region, VertexHandle v) const {
-    const CornerUse wanted{cornerOf(region, v), region, v, {}, {}};
+  int cornerUse(const BoundaryRun& run, const RunEnd& end) const {
+    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}};
     const auto found =
         std::lower_bound(uses_.begin(), uses_.end(), wanted,
                          [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
     return int(found - uses_.begin());
   }
-  int cornerOf(int region, VertexHandle v) const {
-    return const_cast<DisjointSets&>(corners_).root(model_.regions[region].corner[v.idx()]->index);
-  }
+  int cornerOf(const RunEnd& end) const { return const_cast<DisjointSets&>(corners_).root(end.corner); }
+  int groupOf(const BoundaryRun& run, const RunEnd& end) const { return uses_[cornerUse(run, end)].group; }
 
   void placeCorners();
+  CornerPoint cornerOnBorders(const std::vector<int>& members);
+  void placeInnerPoints();
+  int layoutPoint(const CornerUse& use) const;
 
+  PieceLoop borderPiece(int region, const Layout::Stretch& stretch,
+                        const std::vector<SplineEdgeId>& edges) const;
   void appendShells(SplineModel& result) const;
 
   const Model& model_;
@@ -142,20 +121,116 @@ class ModelTrimmer {
   const Progress& progress_;
   DisjointSets corners_;
   std::vector<Sheet> sheets_;
-  std::vector<std::vector<BoundaryRun>> runs_;
-  std::map<int, CurveWithSides> curves_;  ///< by CurveId
-  std::vector<CornerUse> uses_;           ///< ascending
-  std::vector<CornerPoint> vertices_;     ///< by group
+  std::vector<int> sheetRegion_, firstSheet_;        ///< by sheet; by region
+  std::vector<std::optional<BorderLines>> borders_;  ///< by region, where it has several charts
+  std::vector<BoundaryRun> runs_;                    ///< region by region, in the order of their loops
+  std::optional<CurvePieces> curvePieces_;
+  std::map<int, CurveWithSides> curves_;                     ///< by piece
+  std::vector<CornerUse> uses_;                              ///< ascending
+  std::vector<CornerPoint> vertices_;                        ///< by group
+  std::map<std::pair<int, int>, int> vertexOfPoint_;         ///< by region and point of its layout: group
+  std::vector<std::vector<BorderLines::Edge>> borderEdges_;  ///< by region
 };
 
-void ModelTrimmer::placeCorners() {
-  for (const auto& runs : runs_)
-    for (const auto& run : runs) {
-      uses_.push_back(
-          {cornerOf(run.region, run.vertices.front()), run.region, run.vertices.front(), run.uv.front(), {}});
-      uses_.push_back(
-          {cornerOf(run.region, run.vertices.back()), run.region, run.vertices.back(), run.uv.back(), {}});
+void ModelTrimmer::makeSheets() {
+  for (int r = 0; r < int(fitted_.size()); ++r) {
+    firstSheet_.push_back(int(sheets_.size()));
+    const FittedSurface* fit = fitted_[r];
+    if (fit && fit->layout) {
+      for (const auto& surface : fit->surfaces) sheets_.push_back({surface, {}, kSheetSlack});
+    } else if (fit) {
+      auto& sheet = sheets_.emplace_back();
+      sheet.surface = fit->surface;
+      if (fit->surface.closedU) sheet.period = fit->surface.lastU() - fit->surface.firstU();
     }
+    sheetRegion_.resize(sheets_.size(), r);
+  }
+  for (int r = 0; r < int(fitted_.size()); ++r) {
+    auto& lines = borders_.emplace_back();
+    if (fitted_[r] && fitted_[r]->layout) lines.emplace(*fitted_[r]->layout, &sheets_[firstSheet_[r]]);
+  }
+}
+
+/// Moves the places where borders end on model curves: to where the foot of the curve's point on the fitted
+/// surface passes over the border's line.
+void ModelTrimmer::settleSplits(std::vector<CurveSplit>& splits) {
+  for (auto& split : splits) {
+    const auto& ends = borders_[split.region]->endsAt(split.point);
+    if (ends.size() != 1) continue;
+    const SheetLine line = borders_[split.region]->line(ends[0].border, 0);
+    const double s = borders_[split.region]->endOf(ends[0]);
+    const TrueCurve& curve = *model_.curves[split.curve.index].curve;
+    const Eigen::Vector2d beside(-line.along[1], line.along[0]);
+    Eigen::Vector2d guess = line.at(s);
+    const auto off = [&](double t) {
+      guess = line.sheet->footPoint(curve.point(t), guess);
+      return (guess - line.start).dot(beside);
+    };
+    // Between the neighbours on all runs that end here, to keep their order.
+    double low = curve.first(), high = curve.last();
+    for (const auto& run : runs_) {
+      if (run.start.corner == split.corner) high = std::min(high, (run.t[0] + run.t[1]) / 2);
+      if (run.end.corner == split.corner) low = std::max(low, (run.t.end()[-1] + run.t.end()[-2]) / 2);
+    }
+    double t0 = split.t, t1 = split.t + 1e-3 * (high - split.t), f0 = off(t0), f1 = off(t1);
+    for (int step = 0; step < 20 && f1 != f0; ++step) {
+      const double t2 = std::clamp(t1 - f1 * (t1 - t0) / (f1 - f0), low, high);
+      if (std::abs(t2 - t1) < 1e-14 * (curve.last() - curve.first())) break;
+      t0 = t1;
+      f0 = f1;
+      t1 = t2;
+      f1 = off(t2);
+    }
+    if (std::abs(f1) < 1e-9) split.t = t1;
+    for (auto& run : runs_) {
+      if (run.start.corner == split.corner) {
+        run.t.front() = split.t;
+        run.points.front() = curve.point(split.t);
+      }
+      if (run.end.corner == split.corner) {
+        run.t.back() = split.t;
+        run.points.back() = curve.point(split.t);
+      }
+    }
+  }
+}
+
+void ModelTrimmer::collectRuns() {
+  int corners = int(model_.corners.size());
+  std::vector<CurveSplit> splits;
+  for (int r = 0; r < int(model_.regions.size()); ++r) {
+    if (!fitted_[r]) continue;
+    const auto runs = fitted_[r]->layout ? boundaryRuns(model_, r, *fitted_[r]->layout, corners, splits)
+                                         : boundaryRuns(model_, r, fitted_[r]->chart);
+    runs_.insert(runs_.end(), runs.begin(), runs.end());
+  }
+  corners_ = DisjointSets(corners);
+  settleSplits(splits);
+  cutAtSplits(model_, splits, runs_);
+  std::stable_sort(runs_.begin(), runs_.end(), [](const BoundaryRun& a, const BoundaryRun& b) {
+    return std::tuple(a.region, a.chart, a.place) < std::tuple(b.region, b.chart, b.place);
+  });
+  curvePieces_.emplace(model_, splits);
+  const auto tooShort = [&](const BoundaryRun& run) {
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < run.points.size(); ++i)
+      length += (run.points[i] - run.points[i + 1]).norm();
+    return length < kShortestEdge;
+  };
+  for (const auto& run : runs_)
+    if (tooShort(run)) corners_.unite(run.start.corner, run.end.corner);
+  std::erase_if(runs_, tooShort);
+  for (const auto& run : runs_)
+    curves_[curvePieces_->pieceOf(run)].sides.push_back(
+        {&sheets_[sheetOf(run)], &run, model_.regions[run.region].name, {}, {}});
+}
+
+void ModelTrimmer::placeCorners() {
+  for (const auto& run : runs_) {
+    uses_.push_back(
+        {cornerOf(run.start), sheetOf(run), run.start.vertex, run.points.front(), run.uv.front(), {}});
+    uses_.push_back({cornerOf(run.end), sheetOf(run), run.end.vertex, run.points.back(), run.uv.back(), {}});
+  }
   std::sort(uses_.begin(), uses_.end(),
             [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
   uses_.erase(std::unique(uses_.begin(), uses_.end(),
@@ -167,42 +242,128 @@ void ModelTrimmer::placeCorners() {
   for (const auto& [id, curve] : curves_)
     if (curve.sides.size() == 2) {
       const auto &a = *curve.sides[0].run, &b = *curve.sides[1].run;
-      together.unite(cornerUse(a.region, a.vertices.front()), cornerUse(b.region, b.vertices.front()));
-      together.unite(cornerUse(a.region, a.vertices.back()), cornerUse(b.region, b.vertices.back()));
+      together.unite(cornerUse(a, a.start), cornerUse(b, b.start));
+      together.unite(cornerUse(a, a.end), cornerUse(b, b.end));
     }
   std::vector<int> shellOf(model_.regions.size(), -1);
   for (int s = 0; s < int(model_.shells.size()); ++s)
     for (const int r : model_.shells[s].regions) shellOf[r] = s;
+  const auto shellOfUse = [&](std::size_t i) { return shellOf[sheetRegion_[uses_[i].sheet]]; };
   for (std::size_t i = 0; i < uses_.size(); ++i)
     for (std::size_t j = i + 1; j < uses_.size() && uses_[j].corner == uses_[i].corner; ++j)
-      if (shellOf[uses_[i].region] == shellOf[uses_[j].region]) together.unite(int(i), int(j));
+      if (shellOfUse(i) == shellOfUse(j)) together.unite(int(i), int(j));
 
   std::map<int, std::vector<int>> groups;
   for (int i = 0; i < int(uses_.size()); ++i) groups[together.root(i)].push_back(i);
   for (const auto& [first, members] : groups) {
-    std::vector<const Sheet*> sheets;
-    std::vector<Eigen::Vector2d> guess;
-    for (const int i : members) {
-      sheets.push_back(&sheets_[uses_[i].region]);
-      guess.push_back(uses_[i].guess);
-    }
-    const auto& mesh = model_.regions[uses_[first].region].mesh;
-    vertices_.push_back(cornerPoint(mesh.point(uses_[first].vertex), sheets, guess, reach_));
+    vertices_.push_back(cornerOnBorders(members));
     for (std::size_t k = 0; k < members.size(); ++k) {
-      uses_[members[k]].group = int(vertices_.size()) - 1;
-      uses_[members[k]].at = vertices_.back().at[k];
+      auto& use = uses_[members[k]];
+      use.group = int(vertices_.size()) - 1;
+      use.at = vertices_.back().at[k];
+      if (borders_[sheetRegion_[use.sheet]])
+        if (const int point = layoutPoint(use); point >= 0)
+          vertexOfPoint_[{sheetRegion_[use.sheet], point}] = use.group;
     }
   }
   for (auto& [id, curve] : curves_)
     for (auto& side : curve.sides) {
-      const auto unwrapped = [&](VertexHandle v, const Eigen::Vector2d& near) {
-        Eigen::Vector2d x = uses_[cornerUse(side.run->region, v)].at;
+      const auto unwrapped = [&](const RunEnd& end, const Eigen::Vector2d& near) {
+        Eigen::Vector2d x = uses_[cornerUse(*side.run, end)].at;
         if (const auto& period = side.sheet->period) x[0] += *period * std::round((near[0] - x[0]) / *period);
         return x;
       };
-      side.start = unwrapped(side.run->vertices.front(), side.run->uv.front());
-      side.end = unwrapped(side.run->vertices.back(), side.run->uv.back());
+      side.start = unwrapped(side.run->start, side.run->uv.front());
+      side.end = unwrapped(side.run->end, side.run->uv.back());
     }
+  placeInnerPoints();
+}
+
+/// The point of its region's layout that a corner is, or -1.
+int ModelTrimmer::layoutPoint(const CornerUse& use) const {
+  if (use.vertex < 0) return -1 - use.vertex;
+  const auto& points = fitted_[sheetRegion_[use.sheet]]->layout->points;
+  for (int p = 0; p < int(points.size()); ++p)
+    if (points[p].vertex.is_valid() && points[p].vertex.idx() == use.vertex) return p;
+  return -1;
+}
+
+/// The vertex for uses of one corner. Where one border between charts ends in it, on the border's curve;
+/// where several do, at their common end in the grid.
+CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
+  const Eigen::Vector3d p = uses_[members.front()].point;
+  std::vector<const Sheet*> sheets;
+  std::vector<Eigen::Vector2d> guess;
+  std::set<std::pair<int, int>> points;  // region, point of its layout
+  for (const int i : members) {
+    sheets.push_back(&sheets_[uses_[i].sheet]);
+    guess.push_back(uses_[i].guess);
+    const int region = sheetRegion_[uses_[i].sheet];
+    if (!borders_[region]) continue;
+    if (const int point = layoutPoint(uses_[i]); point >= 0 && !borders_[region]->endsAt(point).empty())
+      points.insert({region, point});
+  }
+  if (points.empty()) return cornerPoint(p, sheets, guess, reach_);
+  CornerPoint corner{Eigen::Vector3d::Zero(), guess};
+  bool placed = false;
+  for (const auto& [region, point] : points) {
+    auto& lines = *borders_[region];
+    const auto& ends = lines.endsAt(point);
+    const SheetLine line = lines.line(ends[0].border, 0);
+    if (ends.size() == 1) {
+      std::vector<int> others;
+      for (int k = 0; k < int(members.size()); ++k)
+        if (sheetRegion_[uses_[members[k]].sheet] != region) others.push_back(k);
+      const int other = others.size() == 1 && !placed ? others[0] : -1;
+      lines.setEnd(ends[0], placeOnLine(placed ? corner.point : p, line, lines.endOf(ends[0]),
+                                        other < 0 ? nullptr : sheets[other],
+                                        other < 0 ? Eigen::Vector2d(0, 0) : guess[other], reach_));
+    }
+    if (!placed) corner.point = line.sheet->jet(line.at(lines.endOf(ends[0]))).s;
+    placed = true;
+    if (ends.size() == 1)
+      for (std::size_t k = 0; k < members.size(); ++k)
+        for (const int side : {0, 1}) {
+          const SheetLine own = lines.line(ends[0].border, side);
+          if (sheets[k] == own.sheet) corner.at[k] = own.at(lines.endOf(ends[0]));
+        }
+  }
+  for (std::size_t k = 0; k < members.size(); ++k)
+    if (!borders_[sheetRegion_[uses_[members[k]].sheet]])
+      corner.at[k] = sheets[k]->footPoint(corner.point, corner.at[k]);
+  return corner;
+}
+
+/// Vertices inside regions, where borders meet, and the borders' edges.
+void ModelTrimmer::placeInnerPoints() {
+  borderEdges_.resize(model_.regions.size());
+  for (int r = 0; r < int(model_.regions.size()); ++r) {
+    if (!borders_[r]) continue;
+    const auto& layout = *fitted_[r]->layout;
+    for (int p = 0; p < int(layout.points.size()); ++p) {
+      const auto& ends = borders_[r]->endsAt(p);
+      if (ends.empty() || vertexOfPoint_.count({r, p})) continue;
+      const SheetLine line = borders_[r]->line(ends[0].border, 0);
+      vertexOfPoint_[{r, p}] = int(vertices_.size());
+      vertices_.push_back({line.sheet->jet(line.at(borders_[r]->endOf(ends[0]))).s, {}});
+    }
+    for (int b = 0; b < int(layout.borders.size()); ++b) {
+      auto edge = borders_[r]->edge(b);
+      edge.edge.start = {vertexOfPoint_.at({r, layout.borders[b].startPoint})};
+      edge.edge.end = {vertexOfPoint_.at({r, layout.borders[b].endPoint})};
+      if (edge.reversed) std::swap(edge.edge.start, edge.edge.end);
+      borderEdges_[r].push_back(std::move(edge));
+    }
+  }
+}
+
+PieceLoop ModelTrimmer::borderPiece(int region, const Layout::Stretch& stretch,
+                                    const std::vector<SplineEdgeId>& edges) const {
+  const auto& edge = borderEdges_[region][*stretch.border];
+  const bool forward = stretch.forward != edge.reversed;
+  return {{{edges[*stretch.border], forward, edge.onSheet[stretch.forward ? 0 : 1]},
+           forward ? edge.edge.start : edge.edge.end,
+           forward ? edge.edge.end : edge.edge.start}};
 }
 
 SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
@@ -210,12 +371,10 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
   for (const auto& vertex : vertices_) result.vertices.push_back({vertex.point, kSmallestTolerance});
   std::map<const BoundaryRun*, std::vector<LoopPiece>> pieces;
   const auto addEdges = [&](const std::vector<TrimPiece>& edge, const std::vector<const SheetSide*>& sides) {
-    const auto group = [&](VertexHandle v) {
-      return SplineVertexId{uses_[cornerUse(sides[0]->run->region, v)].group};
-    };
-    SplineVertexId start = group(sides[0]->run->vertices.front());
+    const BoundaryRun& first = *sides[0]->run;
+    SplineVertexId start{groupOf(first, first.start)};
     for (std::size_t i = 0; i < edge.size(); ++i) {
-      SplineVertexId end = group(sides[0]->run->vertices.back());
+      SplineVertexId end{groupOf(first, first.end)};
       if (i + 1 < edge.size()) {
         end = {int(result.vertices.size())};
         result.vertices.push_back({edge[i].curve.poles.back(), kSmallestTolerance});
@@ -236,12 +395,10 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
       const SheetSide &a = curve.sides[0], &b = curve.sides[1];
       std::optional<std::vector<TrimPiece>> edge;
       if (curve.intersection) {
-        const auto vertexPoint = [&](VertexHandle v) {
-          return vertices_[uses_[cornerUse(a.run->region, v)].group].point;
-        };
-        edge =
-            sharedEdge(*curve.intersection, model_.curves[id].start == model_.curves[id].end,
-                       vertexPoint(a.run->vertices.front()), vertexPoint(a.run->vertices.back()), progress_);
+        const auto& piece = (*curvePieces_)[id];
+        edge = sharedEdge(*curve.intersection, piece.start == piece.end,
+                          vertices_[groupOf(*a.run, a.run->start)].point,
+                          vertices_[groupOf(*a.run, a.run->end)].point, progress_);
       }
       if (!edge) {
         const double near = std::min(closeness[a.run->region], closeness[b.run->region]);
@@ -256,26 +413,55 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
     }
   }
 
-  for (int r = 0; r < int(runs_.size()); ++r) {
-    if (!fitted_[r]) continue;
-    std::map<int, PieceLoop> loops;
-    for (const auto& run : runs_[r]) {
-      auto& part = pieces.at(&run);
-      if (!run.forward) std::reverse(part.begin(), part.end());
-      auto& loop = loops[run.loop];
-      loop.insert(loop.end(), part.begin(), part.end());
-    }
-    std::vector<PieceLoop> inOrder;
-    for (auto& [index, loop] : loops) inOrder.push_back(std::move(loop));
-    for (auto& face : trimmedFaces(sheets_[r], inOrder, r, model_.regions[r].name, result))
+  const auto appendFaces = [&](int sheet, const std::vector<PieceLoop>& loops) {
+    const int r = sheetRegion_[sheet];
+    for (auto& face : trimmedFaces(sheets_[sheet], loops, r, model_.regions[r].name, result))
       result.faces.push_back(std::move(face));
+  };
+  // By sheet, loop and stretch: the edges along the region's boundary.
+  std::map<std::array<int, 3>, PieceLoop> stretches;
+  for (const auto& run : runs_) {
+    auto& part = pieces.at(&run);
+    if (!run.forward) std::reverse(part.begin(), part.end());
+    auto& stretch = stretches[{sheetOf(run), run.place[0], run.place[1]}];
+    stretch.insert(stretch.end(), part.begin(), part.end());
+  }
+  for (int r = 0; r < int(fitted_.size()); ++r) {
+    if (!fitted_[r]) continue;
+    if (!borders_[r]) {
+      std::vector<PieceLoop> loops;
+      for (auto at = stretches.lower_bound({firstSheet_[r], 0, 0});
+           at != stretches.end() && at->first[0] == firstSheet_[r]; ++at)
+        loops.push_back(at->second);
+      appendFaces(firstSheet_[r], loops);
+      continue;
+    }
+    std::vector<SplineEdgeId> edges;
+    for (const auto& edge : borderEdges_[r]) {
+      edges.push_back({int(result.edges.size())});
+      result.edges.push_back(edge.edge);
+    }
+    const auto& charts = fitted_[r]->layout->charts;
+    for (int c = 0; c < int(charts.size()); ++c) {
+      std::vector<PieceLoop> loops;
+      for (int l = 0; l < int(charts[c].loops.size()); ++l) {
+        auto& loop = loops.emplace_back();
+        for (int k = 0; k < int(charts[c].loops[l].size()); ++k) {
+          const auto& stretch = charts[c].loops[l][k];
+          const auto part =
+              stretch.border ? borderPiece(r, stretch, edges) : stretches[{firstSheet_[r] + c, l, k}];
+          loop.insert(loop.end(), part.begin(), part.end());
+        }
+      }
+      appendFaces(firstSheet_[r] + c, loops);
+    }
   }
 
   for (const auto& face : result.faces)
     for (const auto& loop : face.loops)
       for (const auto& coedge : loop) {
         const SplineEdge& edge = result.edges[coedge.edge.index];
-        const Sheet sheet{face.surface, {}};
+
         for (const bool atStart : {true, false}) {
           SplineVertex& vertex = result.vertices[(atStart ? edge.start : edge.end).index];
           const Eigen::Vector3d inSpace = atStart ? edge.curve.poles.front() : edge.curve.poles.back();

@@ -9,12 +9,13 @@
 
 namespace trimquad {
 
-/// Trims the fitted surfaces of a model's regions and joins them: edges shared by two regions lie on both surfaces
-/// (their intersection), free edges follow the region's boundary curve within `tolerance`.
-/// `fitted[i]` belongs to `model.regions[i]`; a region that failed is null, its neighbours' edges there are free.
-/// Guarantees: every edge's curve agrees with its curves on the faces within the edge's tolerance (measured).
-/// \param tolerance largest distance of a free edge from the boundary curve, model units
+/// Trims the fitted surfaces of a model's regions and joins them: edges shared by two regions lie on both
+/// surfaces (their intersection), free edges follow the region's boundary curve within `tolerance`.
+/// `fitted[i]` belongs to `model.regions[i]`; a region that failed is null, its neighbours' edges there are
+/// free. Guarantees: every edge's curve agrees with its curves on the faces within the edge's tolerance
+/// (measured). \param tolerance largest distance of a free edge from the boundary curve, model units
 SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& maps,
-                      const std::vector<const FittedSurface*>& fitted, double tolerance, const Progress& progress);
+                      const std::vector<const FittedSurface*>& fitted, double tolerance,
+                      const Progress& progress);
 
 }  // namespace trimquad

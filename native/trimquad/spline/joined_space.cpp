@@ -1,0 +1,270 @@
+#include "trimquad/spline/joined_space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "trimquad/base/sparse_solver.h"
+
+namespace trimquad {
+namespace {
+
+/// Weight of exact conditions in the quadratic, relative to the data.
+constexpr double kExactWeight = 100;
+constexpr int kMaxMultiplierSteps = 100;
+/// Violations of exact conditions that are left, relative to the extent of the data.
+constexpr double kRounding = 1e-13;
+/// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
+/// quad^2 of surface.
+constexpr double kTangentWeight = 3;
+/// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
+constexpr double kTangentReach = 2;
+constexpr double kBeyondBoundary = 0.5;  ///< quads
+constexpr double kSame = 1e-9;           ///< quads
+
+using Terms = std::vector<std::pair<int, double>>;
+
+/// Evaluates the splines of one chart as combinations of its unknowns.
+class ChartEvaluator {
+ public:
+  ChartEvaluator(const SplineSpace& space, int offset)
+      : space_(space), offset_(offset), knotsU_(space.u.knots()), knotsV_(space.v.knots()) {}
+
+  /// Appends factor * d^order S / d axis^order.
+  void append(const Eigen::Vector2d& x, int axis, int order, double factor, Terms& terms) const {
+    BasisFunctions bu, bv;
+    basisFunctions(knotsU_, space_.u.degree, x[0], order, bu);
+    basisFunctions(knotsV_, space_.v.degree, x[1], order, bv);
+    const int ku = axis == 0 ? order : 0, kv = axis == 1 ? order : 0;
+    for (int j = 0; j <= space_.v.degree; ++j)
+      for (int i = 0; i <= space_.u.degree; ++i) {
+        const double value = factor * bu.value[ku][i] * bv.value[kv][j];
+        if (value != 0)
+          terms.push_back({offset_ + bu.first + i + space_.u.unknowns() * (bv.first + j), value});
+      }
+  }
+
+  /// Appends factor * the derivative along a unit vector of the grid.
+  void appendAlong(const Eigen::Vector2d& x, const Eigen::Vector2d& direction, double factor,
+                   Terms& terms) const {
+    const int axis = direction[0] != 0 ? 0 : 1;
+    append(x, axis, 1, factor * direction[axis], terms);
+  }
+
+ private:
+  const SplineSpace& space_;
+  int offset_;
+  std::vector<double> knotsU_, knotsV_;
+};
+
+Eigen::Vector2d turned(const Eigen::Vector2d& d, int quarters) {
+  Eigen::Vector2d result = d;
+  for (int k = 0; k < (quarters & 3); ++k) result = Eigen::Vector2d(-result[1], result[0]);
+  return result;
+}
+
+/// Distances along the border of the knot lines that cross it, on the side's chart.
+std::vector<double> breaksAlong(const SplineSpace& space, const Layout::Border& border, int side) {
+  const int axis = 1 - border.axis(side);
+  const double start = border.start[side][axis], sign = border.end[side][axis] > start ? 1 : -1;
+  std::vector<double> result;
+  for (const double at : (axis == 0 ? space.u : space.v).breaks) result.push_back(sign * (at - start));
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace
+
+int JoinedSpace::poles() const {
+  int sum = 0;
+  for (const auto& chart : charts) sum += chart.poles();
+  return sum;
+}
+
+std::vector<int> JoinedSpace::offsets() const {
+  std::vector<int> result{0};
+  for (const auto& chart : charts) result.push_back(result.back() + chart.poles());
+  return result;
+}
+
+void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>& offset,
+                            std::vector<Condition>& conditions) const {
+  const SplineSpace* space[2];
+  std::vector<ChartEvaluator> side;
+  std::vector<double> breaks[2];
+  for (int k : {0, 1}) {
+    space[k] = &charts[border.chart[k]];
+    side.emplace_back(*space[k], offset[border.chart[k]]);
+    breaks[k] = breaksAlong(*space[k], border, k);
+  }
+  const double length = border.length();
+  const Eigen::Vector2d along0 = (border.end[0] - border.start[0]) / length;
+  const Eigen::Vector2d along1 = turned(along0, border.across.rotation);
+  // The first chart lies to the left.
+  const Eigen::Vector2d over0(along0[1], -along0[0]), over1 = turned(over0, border.across.rotation);
+
+  double low = 0, high = length;
+  const auto& startPoint = layout_.points[border.startPoint];
+  const auto& endPoint = layout_.points[border.endPoint];
+  if (!startPoint.inner()) low = std::max({-kBeyondBoundary, breaks[0].front(), breaks[1].front()});
+  if (!endPoint.inner()) high = std::min({length + kBeyondBoundary, breaks[0].back(), breaks[1].back()});
+  std::vector<double> ends{low, high};
+  for (int k : {0, 1})
+    for (const double s : breaks[k])
+      if (s > low + kSame && s < high - kSame) ends.push_back(s);
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kSame; }),
+             ends.end());
+
+  // How far the influence of a singularity at an end reaches, and the cosine of the angle between
+  // neighbouring lines there once the surface is flattened.
+  const auto reach = [&](bool atStart) {
+    double farthest = 0;
+    for (int k : {0, 1}) {
+      double first = length;
+      for (const double s : breaks[k]) {
+        const double away = atStart ? s : length - s;
+        if (away > std::min(kTangentReach, length / 2) - kSame) first = std::min(first, away);
+      }
+      farthest = std::max(farthest, first);
+    }
+    return farthest;
+  };
+  const auto isSingular = [](const Layout::Point& p) { return p.inner() && p.quarters != 4; };
+  const double reachStart = isSingular(startPoint) ? reach(true) : 0,
+               reachEnd = isSingular(endPoint) ? reach(false) : 0;
+  const auto cosine = [](const Layout::Point& p) { return std::cos(2 * M_PI / p.quarters); };
+  const auto tangentFactor = [&](double s) {
+    double c = 0;
+    if (reachStart > 0 && s < reachStart) c += cosine(startPoint) * std::pow(1 - s / reachStart, 2);
+    // There the direction along the border points towards the singularity.
+    if (reachEnd > 0 && length - s < reachEnd)
+      c -= cosine(endPoint) * std::pow(1 - (length - s) / reachEnd, 2);
+    return c;
+  };
+  const auto acrossAt = [&](double s, double factor) {
+    const Eigen::Vector2d x0 = border.start[0] + s * along0;
+    const Eigen::Vector2d x1 = border.start[1] + s * along1;
+    Condition condition;
+    side[0].appendAlong(x0, over0, -1, condition.terms);
+    side[1].appendAlong(x1, over1, 1, condition.terms);
+    if (factor != 0) side[0].appendAlong(x0, along0, -2 * factor, condition.terms);
+    return condition;
+  };
+
+  const int points =
+      std::max({space[0]->u.degree, space[0]->v.degree, space[1]->u.degree, space[1]->v.degree}) + 1;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double width = (ends[i + 1] - ends[i]) / points;
+    for (int k = 0; k < points; ++k) {
+      const double s = ends[i] + (k + 0.5) * width;
+      Condition equal{{}, kExactWeight * width, true};
+      side[0].append(border.start[0] + s * along0, 0, 0, 1, equal.terms);
+      side[1].append(border.start[1] + s * along1, 0, 0, -1, equal.terms);
+      conditions.push_back(std::move(equal));
+      if (border.feature) continue;
+      const bool near = (reachStart > 0 && s < reachStart) || (reachEnd > 0 && length - s < reachEnd);
+      Condition smooth = acrossAt(s, tangentFactor(s));
+      smooth.weight = (near ? kTangentWeight : kExactWeight) * width;
+      smooth.exact = !near;
+      conditions.push_back(std::move(smooth));
+    }
+  }
+  if (border.feature) return;
+  for (const bool atStart : {true, false})
+    if ((atStart ? reachStart : reachEnd) > 0) {
+      Condition flat = acrossAt(atStart ? 0 : length, tangentFactor(atStart ? 0 : length));
+      flat.weight = kExactWeight;
+      flat.exact = true;
+      conditions.push_back(std::move(flat));
+    }
+}
+
+/// Moves the minimum of the quadratic to its minimum subject to the exact conditions. The quadratic contains
+/// them as penalties, so that the system for their multipliers is well conditioned but for few directions:
+/// conjugate gradients, a solve each.
+Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
+                                        Eigen::MatrixXd x, double rounding, const Progress& progress) {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> weights;
+  for (const auto& condition : conditions) {
+    if (!condition.exact) continue;
+    for (const auto& [i, a] : condition.terms) entries.emplace_back(int(weights.size()), i, a);
+    weights.push_back(condition.weight);
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows(int(weights.size()), x.rows());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::Map<const Eigen::ArrayXd> weight(weights.data(), Eigen::Index(weights.size()));
+
+  Eigen::MatrixXd r = rows * x, z = weight.matrix().asDiagonal() * r, p = z;
+  Eigen::RowVector3d size = r.cwiseProduct(z).colwise().sum();
+  for (int step = 0; step < kMaxMultiplierSteps && r.size() && r.cwiseAbs().maxCoeff() > rounding; ++step) {
+    progress.check();
+    const Eigen::MatrixXd move = solver.solve(rows.transpose() * p), q = rows * move;
+    Eigen::RowVector3d by = p.cwiseProduct(q).colwise().sum();
+    for (int k = 0; k < 3; ++k) by[k] = by[k] > 0 ? size[k] / by[k] : 0;
+    x -= move * by.asDiagonal();
+    r -= q * by.asDiagonal();
+    z = weight.matrix().asDiagonal() * r;
+    const Eigen::RowVector3d now = r.cwiseProduct(z).colwise().sum();
+    for (int k = 0; k < 3; ++k) by[k] = size[k] > 0 ? now[k] / size[k] : 0;
+    p = z + p * by.asDiagonal();
+    size = now;
+    if (step % 10 == 9) r = rows * x;  // against rounding
+  }
+  return x;
+}
+
+std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
+  std::vector<Condition> result;
+  const auto offset = offsets();
+  for (const auto& border : layout_.borders) addBorder(border, offset, result);
+  return result;
+}
+
+std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
+    const std::vector<std::vector<Datum>>& data, const Fairness& fairness, const Progress& progress) const {
+  const auto offset = offsets();
+  const int unknowns = offset.back();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double count = 0, extent = 0;
+  for (const auto& chart : data)
+    for (const auto& d : chart) middle += (d.point - middle) / ++count;
+  for (const auto& chart : data)
+    for (const auto& d : chart) extent = std::max(extent, (d.point - middle).norm());
+
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(unknowns, 3);
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    progress.check();
+    charts[c].addNormalEquations(data[c], fairness, middle, offset[c], entries, rhs);
+  }
+  const auto rows = conditions();
+  for (const auto& row : rows)
+    for (const auto& [i, a] : row.terms)
+      for (const auto& [j, b] : row.terms)
+        if (i >= j) entries.emplace_back(i, j, row.weight * a * b);
+  Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  entries = {};
+  SparseSolver solver("fit");
+  if (!solver.tryFactorize(matrix)) return {};
+  progress.check();
+
+  const Eigen::MatrixXd x = satisfying(rows, solver, solver.solve(rhs), kRounding * extent, progress);
+
+  std::vector<SplineSurface> surfaces;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    auto& s = surfaces.emplace_back();
+    s.degreeU = charts[c].u.degree;
+    s.degreeV = charts[c].v.degree;
+    s.knotsU = charts[c].u.knots();
+    s.knotsV = charts[c].v.knots();
+    s.countU = charts[c].u.unknowns();
+    s.countV = charts[c].v.unknowns();
+    for (int i = 0; i < charts[c].poles(); ++i) s.poles.push_back(x.row(offset[c] + i).transpose() + middle);
+  }
+  return surfaces;
+}
+
+}  // namespace trimquad

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "trimquad/base/sparse_solver.h"
+#include "trimquad/spline/layout.h"
+#include "trimquad/spline/spline_space.h"
+
+namespace trimquad {
+
+/// Splines over all charts of a layout, one tensor-product space each, that agree along the borders.
+class JoinedSpace {
+ public:
+  explicit JoinedSpace(const Layout& layout) : layout_(layout) {}
+
+  std::vector<SplineSpace> charts;  ///< by chart of the layout
+
+  int poles() const;
+
+  /// The spline surfaces that minimise the sum over all charts of what SplineSpace::leastSquares minimises,
+  /// subject to: both sides of a border have the same curve, whatever their knots; they have the same
+  /// derivatives across it (in the common chart) away from singularities and off feature lines. Next to a
+  /// singularity, within about a quad, the derivatives of both sides across the border and the
+  /// one along it become linearly dependent, exactly in the singularity and by weighted least squares beyond.
+  /// The conditions hold up to rounding (multipliers).
+  ///
+  /// Beyond the surface's boundary borders go on for half a quad, for trims that leave the region.
+  /// \param data by chart. Empty where data and fairness do not determine the surfaces.
+  std::optional<std::vector<SplineSurface>> leastSquares(const std::vector<std::vector<Datum>>& data,
+                                                         const Fairness& fairness,
+                                                         const Progress& progress) const;
+
+ private:
+  struct Condition {
+    std::vector<std::pair<int, double>> terms;  ///< unknown, factor
+    double weight;
+    bool exact;
+  };
+  static Eigen::MatrixXd satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
+                                    Eigen::MatrixXd x, double rounding, const Progress& progress);
+  std::vector<int> offsets() const;
+  std::vector<Condition> conditions() const;
+  void addBorder(const Layout::Border& border, const std::vector<int>& offset,
+                 std::vector<Condition>& conditions) const;
+
+  const Layout& layout_;
+};
+
+}  // namespace trimquad
