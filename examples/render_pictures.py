@@ -14,7 +14,7 @@ from PIL import Image, ImageChops
 import trimquad
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# A closed surface with singularities has no B-spline faces yet.
+# Of the closed surface the stages before the B-splines are shown.
 OPEN, CLOSED = ("map", "quads", "nurbs"), ("tmesh", "tmesh_unfolded", "quads")
 # name: (number of quads, pictures)
 EXAMPLES = {"hood": (500, OPEN), "tube": (550, OPEN), "sheet": (450, OPEN), "box_with_fillets": (600, OPEN),
