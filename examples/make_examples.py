@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes the four example parts with FreeCAD's own modelling and writes them as STEP beside this script.
+"""Makes the example parts with FreeCAD's own modelling and writes them as STEP beside this script.
 
     freecadcmd examples/make_examples.py        or        python3 examples/make_examples.py
     (with FreeCAD's modules on the path; a folder as the last argument writes there instead)
@@ -8,6 +8,7 @@ hood.step              freeform panel of 1.2 m, trimmed outline with rounded cor
 tube.step              bent open tube, one smooth surface
 sheet.step             wavy sheet cut by an ellipse
 box_with_fillets.step  solid box, its vertical edges filleted, with a through hole
+closed/tee.step        pipe tee, a closed surface with two handles, its joint and its mouths rounded
 """
 import math
 import os
@@ -109,6 +110,23 @@ def box_with_fillets():
     return box.makeFillet(14, upright).cut(Part.makeCylinder(16, 60, V(60, 40, -10))).Solids[0]
 
 
+def tee():
+    def pipes(run, branch):
+        return Part.makeCylinder(run, 200, V(-100, 0, 0), V(1, 0, 0)).fuse(Part.makeCylinder(branch, 95)).removeSplitter()
+
+    def joint(solid):
+        return [e for e in solid.Edges if not isinstance(e.Curve, (Part.Circle, Part.Line))]
+
+    outside, inside = pipes(32, 24), pipes(24, 16)
+    solid = outside.makeFillet(10, joint(outside)).cut(inside.makeFillet(6, joint(inside)))
+    mouths = [e for e in solid.Edges if isinstance(e.Curve, Part.Circle) and _at_mouth(e.CenterOfMass)]
+    return solid.makeFillet(2.5, mouths).Solids[0]
+
+
+def _at_mouth(point):
+    return abs(abs(point.x) - 100) < 1e-3 or abs(point.z - 95) < 1e-3
+
+
 def write_step(shape, path):
     """STEP with a constant date in its header, so that the same shape gives the same bytes."""
     shape.exportStep(path)
@@ -121,11 +139,13 @@ def write_step(shape, path):
 
 def main():
     folder = sys.argv[-1] if os.path.isdir(sys.argv[-1]) else os.path.dirname(os.path.abspath(__file__))
-    for make in (hood, tube, sheet, box_with_fillets):
+    os.makedirs(os.path.join(folder, "closed"), exist_ok=True)
+    for make, name in ((hood, "hood"), (tube, "tube"), (sheet, "sheet"), (box_with_fillets, "box_with_fillets"),
+                       (tee, "closed/tee")):
         shape = make()
-        assert shape.isValid(), make.__name__
-        write_step(shape, os.path.join(folder, make.__name__ + ".step"))
-        print(f"{make.__name__}: {shape.ShapeType}, {len(shape.Faces)} faces, area {shape.Area:.6g}")
+        assert shape.isValid(), name
+        write_step(shape, os.path.join(folder, name + ".step"))
+        print(f"{name}: {shape.ShapeType}, {len(shape.Faces)} faces, area {shape.Area:.6g}")
     return 0
 
 

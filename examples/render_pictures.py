@@ -14,8 +14,11 @@ from PIL import Image, ImageChops
 import trimquad
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-QUADS = {"hood": 500, "tube": 500, "sheet": 450, "box_with_fillets": 600}
-KINDS = ("map", "quads", "nurbs")
+# Of the closed surface the stages before the B-splines are shown.
+OPEN, CLOSED = ("map", "quads", "nurbs"), ("tmesh", "tmesh_unfolded", "quads")
+# name: (number of quads, pictures)
+EXAMPLES = {"hood": (500, OPEN), "tube": (550, OPEN), "sheet": (450, OPEN), "box_with_fillets": (600, OPEN),
+            "closed/tee": (1500, CLOSED)}
 MARGIN = 12  # pixels of white that stay around the drawing
 COLOURS = 96
 WIDTH = 640  # pixels, at most
@@ -35,16 +38,16 @@ def trimmed(picture):
 def main():
     docs = os.path.join(ROOT, "docs")
     os.makedirs(docs, exist_ok=True)
-    for name, quads in QUADS.items():
+    for name, (quads, kinds) in EXAMPLES.items():
         options = trimquad.Options(quads=quads, write=["pictures"])
         result = trimquad.convert(os.path.join(ROOT, "examples", name + ".step"), options)
-        if result.failed:
+        if any(item.error for item in result.regions if item.quads is None or "nurbs" in kinds):
             raise result.failed[0].error
         with tempfile.TemporaryDirectory() as folder:
             result.write(folder)
-            for kind in KINDS:
+            for kind in kinds:
                 picture = Image.open(os.path.join(folder, kind + ".png")).convert("RGB")
-                path = os.path.join(docs, f"{name}-{kind}.png")
+                path = os.path.join(docs, f"{os.path.basename(name)}-{kind}.png")
                 trimmed(picture).save(path, optimize=True)
                 assert os.path.getsize(path) < LARGEST, path
         print(f"{name}: {[r.quads.statistics['quads'] for r in result.regions]} quads")

@@ -3,6 +3,8 @@ import os
 import tempfile
 from contextlib import contextmanager
 
+from .error import input_error
+
 
 def shape_to_bytes(shape):
     """The bytes of a Part.Shape, placement and orientation included."""
@@ -13,10 +15,12 @@ def shape_to_bytes(shape):
 
 
 def shape_from_bytes(data):
-    """The Part.Shape of bytes made by `shape_to_bytes` or by the compiled stages."""
-    import FreeCAD  # noqa: F401  (Part does not work without it)
-    import Part
-
+    """The Part.Shape of bytes made by `shape_to_bytes` or by the compiled stages. Raises Error(input)."""
+    try:
+        import FreeCAD  # noqa: F401  (Part does not work without it)
+        import Part
+    except ImportError as error:
+        raise input_error("shape", f"shapes and their pictures need FreeCAD's Python modules on the path ({error})") from None
     with _scratch_file() as (handle, name):
         with open(name, "wb") as stream:
             stream.write(data)

@@ -89,7 +89,6 @@ class Options:
         for given, what in (
             (self.field == "stress", "--field stress"),
             (self.fill_holes > 0, "--fill-holes"),
-            (self.route == "reembed", "--route reembed"),
         ):
             if given:
                 raise input_error("options", f"{what} is not in this version yet; leave it out")

@@ -5,6 +5,7 @@ from .colours import point_colour
 from .error import input_error
 from .freecad_shape import shape_from_bytes
 from .native import load
+from .polygons import Polygons
 from .tmesh_layout import arc_courses, arc_lines, critical_points, layout_of_patches
 
 SIZE = (9.0, 6.75)  # inches, at 100 dots an inch
@@ -65,11 +66,14 @@ def _checker(corners, images):
 
 
 def _quads(polygons):
-    count = 2 * len(polygons.full)
-    triangles = polygons.points[polygons.triangles()]
-    colours = numpy.tile(TRIMMED_COLOUR, (len(triangles), 1))
-    colours[:count] = QUAD_COLOUR
-    return triangles, colours
+    """Quads in four triangles around their middle each: halves of a bent quad would be shaded apart."""
+    corners = polygons.points[numpy.array(polygons.full, int).reshape(-1, 4)]
+    middles = numpy.broadcast_to(corners.mean(axis=1, keepdims=True), corners.shape)
+    quads = numpy.stack([corners, numpy.roll(corners, -1, axis=1), middles], axis=2).reshape(-1, 3, 3)
+    cells = Polygons(polygons.points, [], polygons.trimmed).triangles()
+    cells = polygons.points[numpy.array(cells, int).reshape(-1, 3)]
+    colours = numpy.repeat([QUAD_COLOUR, TRIMMED_COLOUR], [len(quads), len(cells)], axis=0)
+    return numpy.concatenate([quads, cells]), colours
 
 
 def _lines(polygons):

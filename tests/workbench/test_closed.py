@@ -37,9 +37,9 @@ def tee():
 CLOSED = {"boxes": (boxes, 2), "ball": (ball, 2), "torus": (torus, 0), "tee": (tee, -2)}
 
 
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    """Output folder of a closed part's conversion by the command line, done once."""
+@pytest.fixture(scope="module", params=["auto", "reembed"])
+def written(request, tmp_path_factory):
+    """Output folder of a closed part's conversion by the command line, done once for either route of the grid map."""
     done = {}
 
     def write(name):
@@ -48,7 +48,7 @@ def written(tmp_path_factory):
             CLOSED[name][0]().exportBrep(str(folder / "part.brep"))
             out = folder / "out"
             status = cli.main(["convert", str(folder / "part.brep"), "--out", str(out), "--quads", "400", "--features",
-                               "align", "--write", "seamless,tmesh,gridmap,quads,report", "--quiet"])
+                               "align", "--route", request.param, "--write", "seamless,tmesh,gridmap,quads,report", "--quiet"])
             assert status == 0
             done[name] = out
         return done[name]
@@ -205,6 +205,24 @@ def test_the_optimal_quantization_is_proven_and_no_worse():
     assert best["method"] == "optimal"
     assert best["lower_bound"] == pytest.approx(best["objective"])
     assert best["objective"] <= worse["objective"] + 1e-9
+
+
+@pytest.mark.parametrize("name", ["boxes", "ball", "torus"])
+def test_the_constructive_route_gives_an_integer_grid_map_too(name, tmp_path):
+    options = trimquad.Options(quads=150, features="align", route="reembed", write=["gridmap", "quads"])
+    result = trimquad.convert(CLOSED[name][0](), options)
+    assert [str(r.error) for r in result.failed] == []
+    (region,) = result.report["regions"]
+    assert region["embedding"]["route"] == "reembedded"
+    result.write(str(tmp_path))
+    exact = ExactMap(tmp_path / "gridmap.obj")
+    for _, ((ax, ay), (bx, by), (cx, cy)) in exact.triangles:
+        assert (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) > 0
+    assert all(x.denominator == 1 for _, translation in exact.transitions().values() for x in translation)
+    assert sum(q != 0 for q in exact.turning().values()) == region["singularities"]["count"]
+    faces = faces_of(tmp_path / "quads.obj")
+    valence = Counter(v for face in faces for v in face)
+    assert sum(4 - n for n in valence.values()) == 4 * CLOSED[name][1]
 
 
 def test_the_texture_is_the_grid_map_on_the_triangles(tmp_path):

@@ -53,7 +53,6 @@ def test_an_unusable_option_is_one_line_that_names_it(given, said):
     [
         {"field": "stress"},
         {"fill_holes": 1.0},
-        {"route": "reembed"},
     ],
 )
 def test_what_this_version_cannot_do_is_refused_rather_than_ignored(given):

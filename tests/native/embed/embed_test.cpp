@@ -1,4 +1,5 @@
 #include "trimquad/embed/embed.h"
+#include "support/rounds.h"
 
 #include "tmesh/random_surfaces.h"
 #include "tmesh/tmesh_checks.h"
@@ -56,7 +57,7 @@ void expectEmbedding(const Parametrization& map, const TMesh& tmesh, const Embed
 TEST(Embed, randomSurfaces) {
   const Progress progress;
   int operations = 0, zeroArcs = 0;
-  for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(200) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed);
     const TMesh tmesh = partition(map, progress);
@@ -72,7 +73,7 @@ TEST(Embed, randomSurfaces) {
     }
     zeroArcs += quantization.zeroArcs;
   }
-  EXPECT_GT(zeroArcs, 1000);
+  EXPECT_GT(zeroArcs, int(sample::rounds(400)));
   EXPECT_GT(operations, zeroArcs);
 }
 

@@ -1,4 +1,5 @@
 #include "trimquad/gridmap/patch_map.h"
+#include "support/rounds.h"
 
 #include "tmesh/random_surfaces.h"
 #include "tmesh/tmesh_checks.h"
@@ -28,7 +29,7 @@ PatchMap patchMapOf(const Parametrization& map) {
 
 TEST(PatchMap, randomSurfacesGetValidGridMaps) {
   int uniform = 0;
-  for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(150) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed);
     try {

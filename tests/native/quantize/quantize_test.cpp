@@ -1,4 +1,5 @@
 #include "trimquad/quantize/quantize.h"
+#include "support/rounds.h"
 
 #include <cmath>
 
@@ -99,7 +100,7 @@ TEST(Separation, isWhatMakesTheQuotientTheSameSurface) {
   // Random consistent lengths with many zeros: multiples of circuits added to zero.
   const Progress progress;
   int sound = 0, unsound = 0;
-  for (unsigned seed = 0; seed < 600 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(200) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed, false);
     const TMesh tmesh = partition(map, progress);
@@ -125,13 +126,13 @@ TEST(Separation, isWhatMakesTheQuotientTheSameSurface) {
       (expected ? sound : unsound) += 1;
     }
   }
-  EXPECT_GT(sound, 1000);
-  EXPECT_GT(unsound, 1000);
+  EXPECT_GT(sound, int(sample::rounds(300)));
+  EXPECT_GT(unsound, int(sample::rounds(300)));
 }
 
 TEST(Quantize, randomSurfacesGetConsistentSeparatingLengths) {
   const Progress progress;
-  for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(150) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed, true);
     const TMesh tmesh = partition(map, progress);
@@ -197,7 +198,7 @@ TEST(Quantize, theProvenOptimumIsTheOptimum) {
   const Progress progress;
   int proven = 0;
   double greedy = 0, optimal = 0;
-  for (unsigned seed = 0; seed < 400 && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(200) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed, true);
     const TMesh tmesh = partition(map, progress);
@@ -216,7 +217,7 @@ TEST(Quantize, theProvenOptimumIsTheOptimum) {
                          SeparationTest(dual, Separation::Free), best.objective + 1e-3);
     EXPECT_NEAR(all.best(), best.objective, 1e-4);
   }
-  EXPECT_GT(proven, 20);
+  EXPECT_GT(proven, int(sample::rounds(200) / 20));
   RecordProperty("greedy", std::to_string(greedy));
   RecordProperty("optimal", std::to_string(optimal));
 }
