@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <queue>
+#include <tuple>
 #include <variant>
 
 #include "trimquad/base/error.h"
@@ -36,7 +37,7 @@ class Search {
         if (mesh_.face_handle(g) == mesh_.face_handle(h)) relax({}, 0, from_, mesh_.face_handle(h));
     }
     while (!waiting_.empty()) {
-      const auto [distance, stop] = waiting_.top();
+      const auto [estimate, distance, stop] = waiting_.top();
       waiting_.pop();
       if (distance > reached_.at(stop).distance) continue;
       if (stop == Stop{to_}) return way();
@@ -51,7 +52,8 @@ class Search {
     double distance;
     std::optional<Stop> before;
   };
-  using Waiting = std::pair<double, Stop>;
+  /// Least possible length of a way through the stop, its distance from the start, the stop (A*).
+  using Waiting = std::tuple<double, double, Stop>;
 
   /// The halfedges that leave the corner's vertex, one for each of the patch's triangles there,
   /// counter-clockwise.
@@ -88,7 +90,7 @@ class Search {
       if (found->second.distance <= distance + step) return;
       found->second = {distance + step, before};
     }
-    waiting_.push({distance + step, next});
+    waiting_.push({distance + step + (place(next) - place(to_)).norm(), distance + step, next});
   }
 
   /// From a corner of the triangle of `h`, the one that h leaves, to what is opposite, and along its sides

@@ -1,60 +1,49 @@
 #include "trimquad/embed/zero_collapse.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "trimquad/base/error.h"
 #include "trimquad/embed/path_search.h"
+#include "trimquad/embed/zero_index.h"
 
 namespace trimquad {
 namespace {
 
-/// What every operator makes smaller, in this order: total length of the zero patches; minus the number of
-/// those longer than zero; number of zero arcs.
-using Potential = std::tuple<long, long, long>;
-
 class ZeroCollapse {
  public:
   ZeroCollapse(const SurfaceMesh& input, EmbeddedTMesh& embedded)
-      : input_(input), t_(embedded), mesh_(embedded.surface.mesh), patchOf_(2 * embedded.arcs.size()) {
+      : input_(input),
+        t_(embedded),
+        mesh_(embedded.surface.mesh),
+        patchOf_(2 * embedded.arcs.size()),
+        leaving_(embedded.nodes.size()),
+        zeros_(embedded) {
     occupied_.grow(mesh_);
     for (const auto& node : t_.nodes) occupied_.vertex[node.vertex.idx()] = true;
-    for (std::size_t a = 0; a < t_.arcs.size(); ++a) setOccupied(ArcId{int(a)}, true);
+    for (std::size_t a = 0; a < t_.arcs.size(); ++a) {
+      setOccupied(ArcId{int(a)}, true);
+      addToNodes(ArcId{int(a)});
+    }
     for (std::size_t p = 0; p < t_.patches.size(); ++p)
       for (const auto& side : t_.patches[p].sides)
         for (const HalfArc h : side) patchOf_[h.index()] = PatchId{int(p)};
   }
 
   void run(const Progress& progress, const std::function<void(const EmbeddedTMesh&)>& afterOperation) {
-    Potential before = potential();
+    ZeroIndex::Potential before = zeros_.potential();
     while (step()) {
       progress.check();
-      const Potential after = potential();
-      TRIMQUAD_ASSERT(after < before);
-      before = after;
+      zeros_.update();
+      TRIMQUAD_ASSERT(zeros_.potential() < before);
+      before = zeros_.potential();
       if (afterOperation) afterOperation(t_);
     }
-    TRIMQUAD_ASSERT(std::get<0>(before) == 0 && std::get<2>(before) == 0);
+    TRIMQUAD_ASSERT(zeros_.patches().empty() && zeros_.arcs(true).empty() && zeros_.arcs(false).empty());
   }
 
  private:
   /// One operator, the simplest that applies. Each works on what the ones before it cannot simplify any more.
   bool step() { return closePatch() || collapseArc(true) || collapseArc(false) || splitPatch(); }
-
-  Potential potential() const {
-    long length = 0, longer = 0, arcs = 0;
-    for (const auto& patch : t_.patches) {
-      if (patch.removed || !isZero(patch)) continue;
-      const int l = std::max(t_.length(patch.sides[0]), t_.length(patch.sides[1]));
-      length += l, longer += l > 0;
-    }
-    for (const auto& arc : t_.arcs) arcs += !arc.removed && arc.length == 0;
-    return {length, -longer, arcs};
-  }
-
-  bool isZero(const EmbeddedTMesh::Patch& patch) const {
-    return t_.length(patch.sides[0]) == 0 || t_.length(patch.sides[1]) == 0;
-  }
 
   // --- the T-mesh's loops
 
@@ -81,6 +70,7 @@ class ZeroCollapse {
     const auto [side, index] = placeOf(h);
     auto& arcs = t_.patches[patchOf(h)->index].sides[side];
     arcs.erase(arcs.begin() + long(index));
+    zeros_.touch(*patchOf(h));
     patchOf_[h.index()].reset();
   }
 
@@ -90,6 +80,7 @@ class ZeroCollapse {
     auto& arcs = t_.patches[patchOf(beside)->index].sides[side];
     arcs.insert(arcs.begin() + long(index) + !before, h);
     patchOf_[h.index()] = patchOf(beside);
+    zeros_.touch(*patchOf(h));
   }
 
   void replaceInLoop(HalfArc h, HalfArc by) {
@@ -97,6 +88,7 @@ class ZeroCollapse {
     t_.patches[patchOf(h)->index].sides[side][index] = by;
     patchOf_[by.index()] = patchOf(h);
     patchOf_[h.index()].reset();
+    zeros_.touch(*patchOf(by));
   }
 
   // --- the embedding
@@ -140,22 +132,23 @@ class ZeroCollapse {
   }
 
   void setStart(HalfArc h, NodeId n) {
+    std::erase(leaving_[t_.start(h).index], h);
+    leaving_[n.index].push_back(h);
     (h.forward ? t_.arcs[h.arc.index].from : t_.arcs[h.arc.index].to) = n;
+  }
+
+  /// The arc is new.
+  void addToNodes(ArcId id) {
+    leaving_.resize(t_.nodes.size());
+    for (const HalfArc h : {HalfArc{id, true}, HalfArc{id, false}}) leaving_[t_.start(h).index].push_back(h);
   }
 
   void removeArc(ArcId id) {
     setOccupied(id, false);
     t_.arcs[id.index].removed = true;
-  }
-
-  std::vector<HalfArc> leaving(NodeId n) const {
-    std::vector<HalfArc> all;
-    for (std::size_t a = 0; a < t_.arcs.size(); ++a) {
-      if (t_.arcs[a].removed) continue;
-      for (const bool forward : {true, false})
-        if (t_.start({ArcId{int(a)}, forward}) == n) all.push_back({ArcId{int(a)}, forward});
-    }
-    return all;
+    for (const HalfArc h : {HalfArc{id, true}, HalfArc{id, false}})
+      std::erase(leaving_[t_.start(h).index], h);
+    zeros_.touch(id);
   }
 
   // --- operator 1
@@ -168,13 +161,12 @@ class ZeroCollapse {
   /// One zero arc, onto the end where it has to be, or else where more arcs are. Curves first: this makes
   /// loops of the arcs that join them to themselves.
   bool collapseArc(bool onCurve) {
-    for (std::size_t a = 0; a < t_.arcs.size(); ++a) {
-      const auto& arc = t_.arcs[a];
-      if (arc.removed || arc.length != 0 || arc.onCurve != onCurve) continue;
-      const HalfArc h{ArcId{int(a)}, true};
+    for (const ArcId a : zeros_.arcs(onCurve)) {
+      const HalfArc h{a, true};
       const bool there = isCollapsible(h), back = isCollapsible(h.opposite());
       if (!there && !back) continue;
-      const bool forward = there && back ? leaving(arc.from).size() <= leaving(arc.to).size() : there;
+      const bool forward =
+          there && back ? leaving_[t_[a].from.index].size() <= leaving_[t_[a].to.index].size() : there;
       collapse(forward ? h : h.opposite());
       ++t_.counters.zeroArcCollapses;
       return true;
@@ -235,7 +227,7 @@ class ZeroCollapse {
   /// Once nothing but the curve itself is left at the start of `a`, the curve's arc before it takes in its
   /// path.
   bool continuesCurve(HalfArc a, bool left, bool right) {
-    const auto others = leaving(t_.start(a));
+    const auto& others = leaving_[t_.start(a).index];
     TRIMQUAD_ASSERT(others.size() >= 2);
     if (others.size() > 2) return false;
     const HalfArc b = (others[0] == a ? others[1] : others[0]).opposite();  // ends where a starts
@@ -257,38 +249,32 @@ class ZeroCollapse {
   /// A patch whose loop is one arc, or two: of two the one that lies on no curve goes, and what is beyond it
   /// takes the patch in.
   bool closePatch() {
-    for (std::size_t p = 0; p < t_.patches.size(); ++p) {
-      if (t_.patches[p].removed || !isZero(t_.patches[p])) continue;
-      const auto loop = t_.loop(PatchId{int(p)});
-      TRIMQUAD_ASSERT(!loop.empty());
-      if (loop.size() > 2) continue;
-      HalfArc gone = loop.front(), stays = loop.back();
-      if (t_[gone.arc].onCurve) std::swap(gone, stays);
-      TRIMQUAD_ASSERT(!t_[gone.arc].onCurve && (loop.size() == 1 || gone.arc != stays.arc));
-      for (const HalfArc h : loop) removeFromLoop(h);
-      removeArc(gone.arc);
-      if (loop.size() == 1)
-        removeFromLoop(gone.opposite());
-      else
-        replaceInLoop(gone.opposite(), stays);
-      t_.patches[p].removed = true;
-      ++t_.counters.patchCollapses;
-      return true;
-    }
-    return false;
+    if (zeros_.closable().empty()) return false;
+    const PatchId p = *zeros_.closable().begin();
+    const auto loop = t_.loop(p);
+    TRIMQUAD_ASSERT(!loop.empty());
+    HalfArc gone = loop.front(), stays = loop.back();
+    if (t_[gone.arc].onCurve) std::swap(gone, stays);
+    TRIMQUAD_ASSERT(!t_[gone.arc].onCurve && (loop.size() == 1 || gone.arc != stays.arc));
+    for (const HalfArc h : loop) removeFromLoop(h);
+    removeArc(gone.arc);
+    if (loop.size() == 1)
+      removeFromLoop(gone.opposite());
+    else
+      replaceInLoop(gone.opposite(), stays);
+    t_.patches[p.index].removed = true;
+    ++t_.counters.patchCollapses;
+    return true;
   }
 
   // --- operator 2
 
   /// A zero patch with T-joints, at the first of these.
   bool splitPatch() {
-    for (std::size_t p = 0; p < t_.patches.size(); ++p) {
-      if (t_.patches[p].removed || !isZero(t_.patches[p])) continue;
-      split(PatchId{int(p)});
-      ++t_.counters.patchSplits;
-      return true;
-    }
-    return false;
+    if (zeros_.patches().empty()) return false;
+    split(*zeros_.patches().begin());
+    ++t_.counters.patchSplits;
+    return true;
   }
 
   void split(PatchId p) {
@@ -305,6 +291,7 @@ class ZeroCollapse {
     const ArcId zero{int(t_.arcs.size())};
     t_.arcs.push_back({t_.end(first), t_.start(last), 0, false, false, {}});
     patchOf_.resize(2 * t_.arcs.size());
+    addToNodes(zero);
     setPath({zero, true}, std::move(path));
     const PatchId rest{int(t_.patches.size())};
     t_.patches.emplace_back();
@@ -319,6 +306,9 @@ class ZeroCollapse {
     for (const auto& side : back.sides)
       for (const HalfArc h : side) patchOf_[h.index()] = rest;
     patchOf_[2 * zero.index] = p;
+    zeros_.touch(zero);
+    zeros_.touch(p);
+    zeros_.touch(rest);
   }
 
   /// The two parts, in the direction of `h`, of which the first has the given length.
@@ -332,6 +322,7 @@ class ZeroCollapse {
     t_.arcs.push_back({node, t_.end(h), t_[h.arc].length - length, border, onCurve,
                        EdgePath(path.begin() + long(cut), path.end())});
     patchOf_.resize(2 * t_.arcs.size());
+    addToNodes(rest.arc);
     t_.arcs[h.arc.index].length = length;
     setStart(h.opposite(), node);
     path.resize(cut + 1);
@@ -368,7 +359,9 @@ class ZeroCollapse {
   EmbeddedTMesh& t_;
   SurfaceMesh& mesh_;
   std::vector<std::optional<PatchId>> patchOf_;  ///< by half-arc
+  std::vector<std::vector<HalfArc>> leaving_;    ///< by node
   Occupied occupied_;
+  ZeroIndex zeros_;
 };
 
 }  // namespace
