@@ -262,6 +262,12 @@ def _grid_map(item, index, result, run):
     item.seconds["reembed"] = seconds
 
 
+def _fit(item, tolerance, result, progress):
+    options = result.options
+    threads = max(1, options.threads // len(result.regions))
+    return load().fit_surface(item.mapped_region, item.grid, tolerance, options.degree, threads, progress)
+
+
 def _map_region(item, index, result, progress):
     """The stages of one region in their order; the first Error ends it and is kept in the region."""
     native = load()
@@ -284,9 +290,7 @@ def _map_region(item, index, result, progress):
         _grid_map(item, index, result, run)
         item.quads = run("extract", native.extract_quads, item.grid, item.mapped_region)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
-            item.fitted = run(
-                "fit", native.fit_surface, item.mapped_region, item.grid, result.fit_tolerance, options.degree
-            )
+            item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
     except Error as error:
         if error.kind == "cancelled":
             raise
@@ -311,9 +315,7 @@ def _refit_faulty(result, progress):
                 advice = f"OpenCASCADE finds the fitted surface at fault ({faults[0]}); use a smaller tolerance"
                 raise Error("stage", "fit", advice, item.name)
             with progress.stage("fit", item.name) as native_progress:
-                item.fitted = native.fit_surface(
-                    item.mapped_region, item.grid, tolerance, result.options.degree, native_progress
-                )
+                item.fitted = _fit(item, tolerance, result, native_progress)
         except Error as error:
             if error.kind == "cancelled":
                 raise

@@ -28,11 +28,13 @@ void bindSpline(py::module_& m) {
       .def_readonly("rounds", &FittedSurface::rounds);
   m.def(
       "fit_surface",
-      [](const Region& region, const GridMap& map, double tolerance, int degree, const Progress& progress) {
-        return fitSurface(region, map, {.tolerance = tolerance, .degree = degree}, progress);
+      [](const Region& region, const GridMap& map, double tolerance, int degree, int threads,
+         const Progress& progress) {
+        return fitSurface(region, map, {.tolerance = tolerance, .degree = degree, .threads = threads},
+                          progress);
       },
-      py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("degree"), py::arg("progress"),
-      Released());
+      py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("degree"), py::arg("threads"),
+      py::arg("progress"), Released());
 
   py::class_<SplineModel>(m, "SplineModel")
       .def_readonly("loose_edges", &SplineModel::looseEdges)

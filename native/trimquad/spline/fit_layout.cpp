@@ -7,6 +7,8 @@
 #include <set>
 
 #include "trimquad/base/error.h"
+#include "trimquad/base/parallel.h"
+#include "trimquad/spline/deviation.h"
 #include "trimquad/spline/joined_space.h"
 #include "trimquad/spline/knot_refinement.h"
 #include "trimquad/spline/layout_samples.h"
@@ -32,12 +34,6 @@ constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
 constexpr double kTangentGivesWay = 0.1;
 constexpr double kOnLine = 1e-9;  ///< quads
-
-struct Deviation {
-  double max = 0, rms = 0;
-  int worst = -1;
-  int turnedOver = 0, firstTurned = -1;
-};
 
 struct Place {
   int chart;
@@ -88,6 +84,7 @@ class LayoutFit {
       : region_(region),
         layout_(layout),
         tolerance_(options.tolerance),
+        threads_(options.threads),
         progress_(progress),
         sides_(borderSides(layout)),
         space_(layout),
@@ -113,6 +110,7 @@ class LayoutFit {
       if (correctionPays()) {
         correct();
       } else {
+        if (corrections_ > 0 && deviation_.max > before_.deviation.max) takeBack();
         refine();
         chooseParameters();
       }
@@ -193,7 +191,7 @@ class LayoutFit {
     const auto distance = [&](const Place& x) {
       return (result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]) - p).norm();
     };
-    Place at{from.chart, result_.surfaces[from.chart].footPoint(p, from.parameter)};
+    Place at{from.chart, result_.surfaces[from.chart].footPoint(p, from.parameter, kFootStep)};
     start = from;
     for (int hop = 0; hop < kMaxHops; ++hop) {
       struct Crossing {
@@ -213,7 +211,7 @@ class LayoutFit {
         const double low = side.endsInside[0] ? 0 : -0.5, high = side.length + (side.endsInside[1] ? 0 : 0.5);
         if (s < low - kOnLine || s > high + kOnLine) continue;
         const Eigen::Vector2d guess = Layout::apply(side.over, layout_.scale, at.parameter);
-        const Place next{side.neighbour, result_.surfaces[side.neighbour].footPoint(p, guess)};
+        const Place next{side.neighbour, result_.surfaces[side.neighbour].footPoint(p, guess, kFootStep)};
         const Crossing crossing{{side.neighbour, Layout::apply(side.over, layout_.scale, start.parameter)},
                                 next,
                                 distance(next),
@@ -230,33 +228,27 @@ class LayoutFit {
   }
 
   Deviation measure(std::vector<LayoutSample>& samples, std::vector<Place>& feet) const {
-    Deviation result;
-    double sum = 0;
     feet.resize(samples.size());
-    for (int i = 0; i < int(samples.size()); ++i) {
-      if (i % 4096 == 0) progress_.check();
-      auto& s = samples[i];
-      Place from{s.chart, s.parameter}, start{};
-      const Place at = foot(s.point, from, start);
-      const auto jet = result_.surfaces[at.chart].jet(at.parameter[0], at.parameter[1]);
-      const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
-      const double distance = d.norm();
-      s.distance = d.dot(normal) < 0 ? -distance : distance;
-      sum += distance * distance;
-      if (result.worst < 0 || distance > result.max) {
-        result.max = distance;
-        result.worst = i;
+    std::vector<char> turnedOver(samples.size(), 0);
+    parallelParts(int(samples.size()), threads_, [&](int begin, int end) {
+      progress_.check();
+      for (int i = begin; i < end; ++i) {
+        auto& s = samples[i];
+        const Place from{s.chart, s.parameter};
+        Place start{};
+        const Place at = foot(s.point, from, start);
+        const auto jet = result_.surfaces[at.chart].jet(at.parameter[0], at.parameter[1]);
+        const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
+        s.distance = d.dot(normal) < 0 ? -d.norm() : d.norm();
+        const auto& space = space_.charts[at.chart];
+        const Eigen::Vector2d move = (at.parameter - start.parameter).cwiseAbs();
+        const bool near = move[0] <= space.u.width(space.u.spanOf(at.parameter[0])) &&
+                          move[1] <= space.v.width(space.v.spanOf(at.parameter[1]));
+        turnedOver[i] = !s.agrees(normal);
+        feet[i] = near && !turnedOver[i] ? at : from;
       }
-      const auto& space = space_.charts[at.chart];
-      const Eigen::Vector2d move = (at.parameter - start.parameter).cwiseAbs();
-      const bool near = move[0] <= space.u.width(space.u.spanOf(at.parameter[0])) &&
-                        move[1] <= space.v.width(space.v.spanOf(at.parameter[1]));
-      const bool turnedOver = !(normal.dot(s.normal) > 0);
-      if (turnedOver && result.turnedOver++ == 0) result.firstTurned = i;
-      feet[i] = near && !turnedOver ? at : from;
-    }
-    result.rms = std::sqrt(sum / double(std::max<std::size_t>(1, samples.size())));
-    return result;
+    });
+    return deviationOf(samples, turnedOver);
   }
 
   static std::vector<Place> failing(const std::vector<LayoutSample>& samples, double tolerance) {
@@ -273,8 +265,18 @@ class LayoutFit {
     }
   }
 
+  /// Takes back a correction that made things worse.
+  void takeBack() {
+    samples_ = std::move(before_.samples);
+    feet_ = std::move(before_.feet);
+    failing_ = std::move(before_.failing);
+    result_.surfaces = std::move(before_.surfaces);
+    deviation_ = before_.deviation;
+  }
+
   void correct() {
     ++corrections_;
+    before_ = {samples_, feet_, failing_, result_.surfaces, deviation_};
     moveTo(feet_);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       const double part = samples_[i].distance / deviation_.max;
@@ -431,6 +433,7 @@ class LayoutFit {
   const Region& region_;
   const Layout& layout_;
   double tolerance_;
+  int threads_;
   const Progress& progress_;
   std::vector<std::vector<BorderSide>> sides_;  ///< by chart
   JoinedSpace space_;
@@ -443,6 +446,12 @@ class LayoutFit {
   std::vector<double> emphasis_;
   Deviation deviation_, previous_;
   std::vector<Place> failing_, feet_;
+  struct {
+    std::vector<LayoutSample> samples;
+    std::vector<Place> feet, failing;
+    std::vector<SplineSurface> surfaces;
+    Deviation deviation;
+  } before_;  ///< the last correction
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
   bool solved_ = false, thorough_ = false;
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0;

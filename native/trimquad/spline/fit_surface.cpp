@@ -7,6 +7,8 @@
 #include <string>
 
 #include "trimquad/base/error.h"
+#include "trimquad/base/parallel.h"
+#include "trimquad/spline/deviation.h"
 #include "trimquad/spline/fit_layout.h"
 #include "trimquad/spline/knot_refinement.h"
 #include "trimquad/spline/spline_space.h"
@@ -34,13 +36,6 @@ constexpr double kEmphasis = 10;
 constexpr double kWorstPart = 0.3;
 /// Refinements in a row that may bring less than a fifth.
 constexpr int kPatience = 4;
-
-struct Deviation {
-  double max = 0, rms = 0;
-  int worst = -1;      ///< index of the sample
-  int turnedOver = 0;  ///< samples where the surface's normal points the other way
-  int firstTurned = -1;
-};
 
 /// u of the line at which a closed chart is cut: a whole quad, where the line crosses the region in the
 /// fewest pieces; the middle of the longest row of such lines, for the fit moves the boundary a little.
@@ -115,33 +110,26 @@ SplineSpace initialSpace(const GridMap& map, const Chart& chart, double seam, in
 /// Sets each sample's distance. Gives the feet as well: each one's parameter, or the sample's own where the
 /// foot lies more than a knot interval away or on the other side.
 Deviation measure(const SplineSurface& surface, const SplineSpace& space, std::vector<SurfaceSample>& samples,
-                  std::vector<Eigen::Vector2d>& feet, const Progress& progress) {
-  Deviation result;
-  double sum = 0;
+                  std::vector<Eigen::Vector2d>& feet, int threads, const Progress& progress) {
   feet.resize(samples.size());
-  for (int i = 0; i < int(samples.size()); ++i) {
-    if (i % 4096 == 0) progress.check();
-    auto& s = samples[i];
-    const Eigen::Vector2d foot = surface.footPoint(s.point, s.parameter);
-    const auto jet = surface.jet(foot[0], foot[1]);
-    const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
-    const double distance = d.norm();
-    s.distance = d.dot(normal) < 0 ? -distance : distance;
-    sum += distance * distance;
-    if (result.worst < 0 || distance > result.max) {
-      result.max = distance;
-      result.worst = i;
+  std::vector<char> turnedOver(samples.size(), 0);
+  parallelParts(int(samples.size()), threads, [&](int begin, int end) {
+    progress.check();
+    for (int i = begin; i < end; ++i) {
+      auto& s = samples[i];
+      const Eigen::Vector2d foot = surface.footPoint(s.point, s.parameter, kFootStep);
+      const auto jet = surface.jet(foot[0], foot[1]);
+      const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
+      s.distance = d.dot(normal) < 0 ? -d.norm() : d.norm();
+      Eigen::Vector2d move = (foot - s.parameter).cwiseAbs();
+      if (surface.closedU) move[0] = std::min(move[0], surface.lastU() - surface.firstU() - move[0]);
+      const bool near = move[0] <= space.u.width(space.u.spanOf(foot[0])) &&
+                        move[1] <= space.v.width(space.v.spanOf(foot[1]));
+      turnedOver[i] = !s.agrees(normal);
+      feet[i] = near && !turnedOver[i] ? foot : s.parameter;
     }
-    Eigen::Vector2d move = (foot - s.parameter).cwiseAbs();
-    if (surface.closedU) move[0] = std::min(move[0], surface.lastU() - surface.firstU() - move[0]);
-    const bool near = move[0] <= space.u.width(space.u.spanOf(foot[0])) &&
-                      move[1] <= space.v.width(space.v.spanOf(foot[1]));
-    const bool turnedOver = !(normal.dot(s.normal) > 0);
-    if (turnedOver && result.turnedOver++ == 0) result.firstTurned = i;
-    feet[i] = near && !turnedOver ? foot : s.parameter;
-  }
-  result.rms = std::sqrt(sum / double(std::max<size_t>(1, samples.size())));
-  return result;
+  });
+  return deviationOf(samples, turnedOver);
 }
 
 std::vector<Eigen::Vector2d> failing(const std::vector<SurfaceSample>& samples, double tolerance) {
@@ -179,21 +167,22 @@ class Fit {
       const Progress& progress)
       : region_(region),
         tolerance_(options.tolerance),
+        threads_(options.threads),
         progress_(progress),
         space_(initialSpace(map, chart, seam, options.degree)),
-        samples_(region, map, chart, seam, progress) {
-    const double quad = std::sqrt(surfaceArea(map.mesh) / samples_.chartArea());
+        source_(region, map, chart, seam, progress) {
+    const double quad = std::sqrt(surfaceArea(map.mesh) / source_.chartArea());
     const double inQuads = tolerance_ / quad;
     // With the energy as an integral over the same plane as the squared distance, the deviation that it costs
     // is below 3 % of the tolerance times the surface's bending per quad.
     fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
     fairness_.withoutData = std::max(1e3 * fairness_.withData, 1e-9);
-    narrowest_ = std::exp2(std::floor(std::log2(samples_.triangleExtent() / 4)));
+    narrowest_ = std::exp2(std::floor(std::log2(source_.triangleExtent() / 4)));
   }
 
   /// Runs rounds until the tolerance holds.
   FittedSurface run() {
-    samples_.refine(space_, progress_);
+    makeSamples();
     for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
       if (!solved_) solve();
       solved_ = false;
@@ -214,11 +203,10 @@ class Fit {
  private:
   /// The surface through the samples at their parameters, and its deviation.
   void solve() {
-    emphasis_.resize(samples_.samples.size(), 1);
     std::vector<Datum> data;
-    data.reserve(samples_.samples.size());
-    for (size_t i = 0; i < samples_.samples.size(); ++i) {
-      const auto& s = samples_.samples[i];
+    data.reserve(samples_.size());
+    for (size_t i = 0; i < samples_.size(); ++i) {
+      const auto& s = samples_[i];
       data.push_back({s.parameter, s.point, s.weight * emphasis_[i]});
     }
     auto surface = space_.leastSquares(data, fairness_, progress_);
@@ -229,19 +217,25 @@ class Fit {
     if (!surface) throw stageError("fit", "the normal equations of the surface are singular", region_.name);
     result_.surface = std::move(*surface);
     previous_ = deviation_;
-    deviation_ = measure(result_.surface, space_, samples_.samples, feet_, progress_);
-    failing_ = failing(samples_.samples, threshold(deviation_.max));
+    deviation_ = measure(result_.surface, space_, samples_, feet_, threads_, progress_);
+    failing_ = failing(samples_, threshold(deviation_.max));
   }
 
   /// Moves the parameters to the feet.
   void correct() {
     ++corrections_;
     for (size_t i = 0; i < feet_.size(); ++i) {
-      auto& s = samples_.samples[i];
+      auto& s = samples_[i];
       s.parameter = feet_[i];
       const double part = s.distance / deviation_.max;
       emphasis_[i] = 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
     }
+  }
+
+  void makeSamples() {
+    samples_ = source_.make(space_, false, progress_);
+    cells_ = source_.cells();
+    emphasis_.assign(samples_.size(), 1);
   }
 
   /// On new knots: the chart's parameters, which are smooth where the map is, or those corrected on the
@@ -250,21 +244,19 @@ class Fit {
   void chooseParameters() {
     const bool corrected = corrections_ > 0;
     corrections_ = 0;
-    samples_.refine(space_, progress_);
-    emphasis_.assign(samples_.samples.size(), 1);
-    auto& samples = samples_.samples;
-    if (corrected) {
-      measure(result_.surface, space_, samples, feet_, progress_);
-      for (size_t i = 0; i < samples.size(); ++i) samples[i].parameter = feet_[i];
-      solve();
-    }
-    const Deviation withFeet = deviation_;
-    const auto feet = feet_;
-    const auto useParameters = [&](const std::vector<Eigen::Vector2d>& parameters) {
-      for (size_t i = 0; i < samples.size(); ++i) samples[i].parameter = parameters[i];
-    };
-    useParameters(samples_.chartParameters());
+    makeSamples();
     if (!corrected) return;
+    std::vector<Eigen::Vector2d> ofChart;
+    for (const auto& s : samples_) ofChart.push_back(s.parameter);
+    const auto useParameters = [&](const std::vector<Eigen::Vector2d>& parameters) {
+      for (size_t i = 0; i < samples_.size(); ++i) samples_[i].parameter = parameters[i];
+    };
+    measure(result_.surface, space_, samples_, feet_, threads_, progress_);
+    useParameters(feet_);
+    const auto feet = feet_;
+    solve();
+    const Deviation withFeet = deviation_;
+    useParameters(ofChart);
     solve();
     const bool keepFeet = withFeet.turnedOver == 0 && withFeet.max < kCorrectedWins * deviation_.max;
     if (keepFeet) useParameters(feet);
@@ -272,9 +264,9 @@ class Fit {
   }
 
   bool verified() {
-    auto control = samples_.control(space_, progress_);
+    auto control = source_.make(space_, true, progress_);
     std::vector<Eigen::Vector2d> feet;
-    const Deviation found = measure(result_.surface, space_, control, feet, progress_);
+    const Deviation found = measure(result_.surface, space_, control, feet, threads_, progress_);
     for (size_t i = 0; i < control.size(); ++i) control[i].parameter = feet[i];
     result_.maxDeviation = std::max(found.max, deviation_.max);
     result_.rmsDeviation = found.rms;
@@ -308,14 +300,14 @@ class Fit {
       // Within tolerance, but turned over somewhere.
       if (++stiffened_ > 3)
         throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
-                         region_.name, samples_.samples[std::max(0, deviation_.firstTurned)].point);
+                         region_.name, samples_[std::max(0, deviation_.firstTurned)].point);
       stiffen(30);
       return;
     }
     idle_ = best_ < 0.8 * atRefinement_ ? 0 : idle_ + 1;
     thorough_ = stalled();
     atRefinement_ = best_;
-    if (idle_ > kPatience || !refineKnots(space_, samples_, failing_, narrowest_) ||
+    if (idle_ > kPatience || !refineKnots(space_, samples_, cells_, failing_, narrowest_) ||
         space_.poles() > kMaxPoles)
       throw unreachable(region_, tolerance_, best_, int(result_.surface.poles.size()), position());
   }
@@ -325,13 +317,16 @@ class Fit {
     fairness_.withoutData *= factor;
   }
 
-  Eigen::Vector3d position() const { return samples_.samples[std::max(0, deviation_.worst)].point; }
+  Eigen::Vector3d position() const { return samples_[std::max(0, deviation_.worst)].point; }
 
   const Region& region_;
   double tolerance_;
+  int threads_;
   const Progress& progress_;
   SplineSpace space_;
-  SurfaceSamples samples_;
+  SurfaceSamples source_;
+  std::vector<SurfaceSample> samples_;
+  std::vector<std::array<int, 3>> cells_;
   Fairness fairness_;
   double narrowest_ = 0;
   FittedSurface result_;

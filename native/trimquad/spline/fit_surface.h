@@ -11,6 +11,7 @@ namespace trimquad {
 struct FitOptions {
   double tolerance = 1e-3;  ///< largest distance between surface and region, model units
   int degree = 3;           ///< 2..5
+  int threads = 1;          ///< the result does not depend on it
 };
 
 /// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "trimquad/base/sparse_solver.h"
 
@@ -12,6 +13,7 @@ namespace {
 /// Weight of exact conditions in the quadratic, relative to the data.
 constexpr double kExactWeight = 100;
 constexpr int kMaxMultiplierSteps = 100;
+constexpr int kIdleMultiplierSteps = 8;
 /// Violations of exact conditions that are left, relative to the extent of the data.
 constexpr double kRounding = 1e-13;
 /// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
@@ -193,6 +195,10 @@ Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions
   rows.setFromTriplets(entries.begin(), entries.end());
   const Eigen::Map<const Eigen::ArrayXd> weight(weights.data(), Eigen::Index(weights.size()));
 
+  // Where the conditions contradict each other by rounding, steps beyond that only amplify it.
+  Eigen::MatrixXd best = x;
+  int bestStep = 0;
+  double bestLeft = std::numeric_limits<double>::infinity();
   Eigen::MatrixXd r = rows * x, z = weight.matrix().asDiagonal() * r, p = z;
   Eigen::RowVector3d size = r.cwiseProduct(z).colwise().sum();
   for (int step = 0; step < kMaxMultiplierSteps && r.size() && r.cwiseAbs().maxCoeff() > rounding; ++step) {
@@ -208,8 +214,16 @@ Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions
     p = z + p * by.asDiagonal();
     size = now;
     if (step % 10 == 9) r = rows * x;  // against rounding
+    const double left = r.size() ? r.cwiseAbs().maxCoeff() : 0;
+    if (left < bestLeft) {
+      bestLeft = left;
+      best = x;
+      bestStep = step;
+    } else if (step - bestStep >= kIdleMultiplierSteps) {
+      break;
+    }
   }
-  return x;
+  return best;
 }
 
 std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {

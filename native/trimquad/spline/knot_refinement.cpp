@@ -10,11 +10,16 @@ namespace {
 constexpr double kTakesPart = 0.4;
 
 /// By knot rectangle: how much the residual varies along u and v, squared, for a step of one interval.
-template <class Difference>
 std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space,
                                               const std::vector<SurfaceSample>& samples,
-                                              const std::vector<std::array<int, 3>>& cells,
-                                              const Difference& difference) {
+                                              const std::vector<std::array<int, 3>>& cells) {
+  // By the shorter way around a closed direction.
+  const auto difference = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+    Eigen::Vector2d d = to - from;
+    const double period = space.u.breaks.back() - space.u.breaks.front();
+    if (space.u.closed) d[0] -= period * std::round(d[0] / period);
+    return d;
+  };
   std::vector<Eigen::Array2d> variation(size_t(space.u.spans()) * space.v.spans(), Eigen::Array2d::Zero());
   for (const auto& cell : cells) {
     const SurfaceSample &p = samples[cell[0]], &q = samples[cell[1]], &r = samples[cell[2]];
@@ -47,8 +52,12 @@ void halve(SplineLine& line, const std::vector<char>& marked) {
   line.breaks = std::move(breaks);
 }
 
-bool refine(SplineSpace& space, const std::vector<Eigen::Array2d>& variation,
-            const std::vector<Eigen::Vector2d>& failing, double narrowest) {
+}  // namespace
+
+bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
+                 const std::vector<std::array<int, 3>>& cells, const std::vector<Eigen::Vector2d>& failing,
+                 double narrowest) {
+  const auto variation = residualVariation(space, samples, cells);
   std::vector<char> inU(space.u.spans(), 0), inV(space.v.spans(), 0);
   bool any = false;
   for (const auto& x : failing) {
@@ -65,26 +74,6 @@ bool refine(SplineSpace& space, const std::vector<Eigen::Array2d>& variation,
   halve(space.u, inU);
   halve(space.v, inV);
   return any;
-}
-
-}  // namespace
-
-bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
-                 const std::vector<Eigen::Vector2d>& failing, double narrowest) {
-  const auto difference = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-    return samples.difference(from, to);
-  };
-  return refine(space, residualVariation(space, samples.samples, samples.cells(), difference), failing,
-                narrowest);
-}
-
-bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
-                 const std::vector<std::array<int, 3>>& cells, const std::vector<Eigen::Vector2d>& failing,
-                 double narrowest) {
-  const auto difference = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to) -> Eigen::Vector2d {
-    return to - from;
-  };
-  return refine(space, residualVariation(space, samples, cells, difference), failing, narrowest);
 }
 
 bool halveInterval(SplineSpace& space, int axis, double at, double narrowest) {

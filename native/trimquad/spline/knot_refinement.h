@@ -8,12 +8,9 @@
 namespace trimquad {
 
 /// Halves the knot intervals that hold the `failing` parameters, at a whole quad where there is one inside:
-/// those of u, of v or of both, as the residual of the samples varies across the knot rectangle. Returns
-/// false where no interval could be halved because it would become narrower than `narrowest`.
-bool refineKnots(SplineSpace& space, const SurfaceSamples& samples,
-                 const std::vector<Eigen::Vector2d>& failing, double narrowest);
-
-/// The same from any samples of the space and small triangles between them, by index.
+/// those of u, of v or of both, as the residual varies across the knot rectangle. Returns false where no
+/// interval could be halved because it would become narrower than `narrowest`.
+/// \param cells small triangles between samples, by index
 bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
                  const std::vector<std::array<int, 3>>& cells, const std::vector<Eigen::Vector2d>& failing,
                  double narrowest);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <map>
 
+#include "trimquad/spline/knot_lattice.h"
+
 namespace trimquad {
 namespace {
 
-constexpr double kSamplesAcrossSpan = 4;
-constexpr int kLargestOrder = 16;
+constexpr int kSamplesAcrossSpan = 4;
+/// Part of the weight that the mesh's vertices carry.
+constexpr double kVertexShare = 0.5;
 /// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
 constexpr double kBoundaryStrip = 0.25;
 
@@ -19,16 +22,13 @@ constexpr double kSingularReach = 2;
 
 LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Layout& layout,
                              const Progress& progress)
-    : region_(region), map_(map), layout_(layout), order_(map.mesh.n_faces(), 1) {
+    : region_(region), map_(map), layout_(layout) {
   const auto& mesh = map.mesh;
   std::vector<double> extents;
   vertexNormal_.assign(mesh.n_vertices(), Eigen::Vector3d::Zero());
   for (const auto f : mesh.faces()) {
-    const Corners c = corners(f);
-    const Eigen::Vector2d a = c[1] - c[0], b = c[2] - c[0];
-    const double area = 0.5 * (a.x() * b.y() - a.y() * b.x());
-    area_ += area;
-    extents.push_back(std::sqrt(2 * area));
+    area_ += areaOf(f);
+    extents.push_back(std::sqrt(2 * areaOf(f)));
     std::array<Eigen::Vector3d, 3> p;
     HalfedgeHandle h = mesh.halfedge_handle(f);
     for (auto& corner : p) {
@@ -44,6 +44,7 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
     if (v.idx() % 1024 == 0) progress.check();
     vertexPoint_.push_back(mesh.point(v));
     vertexNormal_[v.idx()].normalize();
+    vertexMeshNormal_.push_back(vertexNormal_[v.idx()]);
     if (!region.surface) continue;
     const auto foot = region.surface->closestFacing(mesh.point(v), vertexNormal_[v.idx()]);
     vertexNormal_[v.idx()] = foot.normal;
@@ -86,41 +87,43 @@ Eigen::Vector2d LayoutSamples::regularised(int chart, const Eigen::Vector2d& x) 
   return x;
 }
 
-LayoutSamples::Corners LayoutSamples::corners(FaceHandle f) const {
+LayoutSamples::Corners LayoutSamples::corners(FaceHandle f, const Transition& toChart) const {
   Corners result;
   HalfedgeHandle h = map_.mesh.halfedge_handle(f);
   for (auto& c : result) {
-    c = map_.scale.toQuads(map_.from(h));
+    c = Layout::apply(toChart, layout_.scale, map_.scale.toQuads(map_.from(h)));
     h = map_.mesh.next_halfedge_handle(h);
   }
   return result;
 }
 
-int LayoutSamples::latticeOrder(FaceHandle f, const JoinedSpace& space) const {
+Eigen::Vector2d LayoutSamples::at(FaceHandle f, const Eigen::Vector3d& barycentric) const {
   const Corners c = corners(f);
-  double order = 1;
-  // Knot intervals in the charts of all pieces of the triangle.
-  for (const auto& piece : layout_.pieces[f.idx()]) {
-    Corners x;
-    for (int k = 0; k < 3; ++k) x[k] = Layout::apply(piece.toChart, layout_.scale, c[k]);
-    for (int axis = 0; axis < 2; ++axis) {
-      const SplineLine& line = axis == 0 ? space.charts[piece.chart].u : space.charts[piece.chart].v;
-      const auto [low, high] = std::minmax({x[0][axis], x[1][axis], x[2][axis]});
-      double narrowest = line.width(line.spanOf(low));
-      for (int i = line.spanOf(low); i <= line.spanOf(high); ++i)
-        narrowest = std::min(narrowest, line.width(i));
-      order = std::max(order, std::ceil(kSamplesAcrossSpan * (high - low) / narrowest));
-    }
-  }
-  return int(std::min<double>(order, kLargestOrder));
+  return barycentric[0] * c[0] + barycentric[1] * c[1] + barycentric[2] * c[2];
+}
+
+double LayoutSamples::areaOf(FaceHandle f) const {
+  const Corners c = corners(f);
+  const Eigen::Vector2d a = c[1] - c[0], b = c[2] - c[0];
+  return 0.5 * (a.x() * b.y() - a.y() * b.x());
+}
+
+/// The charts that the triangle reaches into, each with the ways to it.
+template <class Visit>
+void LayoutSamples::forEachChart(FaceHandle f, const Visit& visit) const {
+  const auto& pieces = layout_.pieces[f.idx()];
+  for (auto piece = pieces.begin(); piece != pieces.end(); ++piece)
+    if (std::none_of(pieces.begin(), piece, [&](const Layout::Piece& earlier) {
+          return earlier.chart == piece->chart && earlier.toChart == piece->toChart;
+        }))
+      visit(piece->chart, piece->toChart);
 }
 
 LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycentric) const {
   const auto& mesh = map_.mesh;
-  const Corners c = corners(f);
+  const Eigen::Vector2d x = at(f, barycentric);
   LayoutSample s;
   s.point.setZero();
-  Eigen::Vector2d x = Eigen::Vector2d::Zero();
   std::array<Eigen::Vector3d, 3> p;
   HalfedgeHandle h = mesh.halfedge_handle(f);
   std::optional<VertexHandle> vertex;
@@ -128,7 +131,6 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
     if (barycentric[k] == 1) vertex = mesh.from_vertex_handle(h);
     p[k] = mesh.point(mesh.from_vertex_handle(h));
     s.point += barycentric[k] * p[k];
-    x += barycentric[k] * c[k];
     h = mesh.next_halfedge_handle(h);
   }
   const auto& piece = layout_.pieceAt(f, x);
@@ -137,9 +139,10 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
   if (vertex) {
     s.point = vertexPoint_[vertex->idx()];
     s.normal = vertexNormal_[vertex->idx()];
+    s.meshNormal = vertexMeshNormal_[vertex->idx()];
     return s;
   }
-  s.normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+  s.normal = s.meshNormal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
   if (region_.surface) {
     const auto foot = region_.surface->closestFacing(s.point, s.normal);
     s.point = foot.point;
@@ -151,65 +154,56 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
 std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool control,
                                               const Progress& progress) {
   const auto& mesh = map_.mesh;
+  const int across = kSamplesAcrossSpan + (control ? 1 : 0);
   std::vector<LayoutSample> samples;
   cells_.clear();
   if (!control) {
     samples.resize(mesh.n_vertices());
-    for (const auto v : mesh.vertices())
-      for (const auto h : mesh.voh_range(v))
-        if (!mesh.is_boundary(h)) {
-          const auto f = mesh.face_handle(h);
-          Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
-          HalfedgeHandle at = mesh.halfedge_handle(f);
-          for (int k = 0; k < 3; ++k, at = mesh.next_halfedge_handle(at)) barycentric[k] = at == h;
-          samples[v.idx()] = sample(f, barycentric);
-          break;
-        }
-  }
-  for (const auto f : mesh.faces()) {
-    if (f.idx() % 256 == 0) progress.check();
-    int& kept = order_[f.idx()];
-    if (!control) kept = std::max(kept, latticeOrder(f, space));
-    const int q = control ? kept + 1 : kept, first = int(samples.size());
-    for (int i = 0; i < q && (q > 1 || control); ++i)
-      for (int j = 0; i + j < q; ++j) {
-        const double x = (i + 1. / 3) / q, y = (j + 1. / 3) / q;
-        samples.push_back(sample(f, {1 - x - y, x, y}));
-      }
-    const Corners c = corners(f);
-    const Eigen::Vector2d a = c[1] - c[0], b = c[2] - c[0];
-    const int inside = int(samples.size()) - first;
-    const double weight = 0.5 * (a.x() * b.y() - a.y() * b.x()) / (inside + (control ? 0 : 3));
-    for (int k = 0; k < inside; ++k) samples[first + k].weight = weight;
-    HalfedgeHandle h = mesh.halfedge_handle(f);
-    std::array<int, 3> vertices;
-    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
-      vertices[k] = mesh.from_vertex_handle(h).idx();
-      if (!control) samples[vertices[k]].weight += weight;
-      const HalfedgeHandle outside = mesh.opposite_halfedge_handle(h);
-      if (!mesh.is_boundary(outside)) continue;
-      for (int i = 0; i < q; ++i) {
-        Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
-        barycentric[(k + 1) % 3] = (i + 0.5) / q;
-        barycentric[k] = 1 - barycentric[(k + 1) % 3];
-        samples.push_back(sample(f, barycentric));
-        samples.back().weight = kBoundaryStrip * (c[(k + 1) % 3] - c[k]).norm() / q;
+    for (const auto f : mesh.faces()) {
+      HalfedgeHandle h = mesh.halfedge_handle(f);
+      const double share = kVertexShare * areaOf(f) / 3;
+      for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
+        auto& s = samples[mesh.from_vertex_handle(h).idx()];
+        const double weight = s.weight + share;
+        if (s.weight == 0) s = sample(f, Eigen::Vector3d::Unit(k));
+        s.weight = weight;
       }
     }
-    const auto addCell = [&](int i, int j, int k) {
-      if (samples[i].chart == samples[j].chart && samples[j].chart == samples[k].chart)
-        cells_.push_back({i, j, k});
-    };
-    if (control) continue;
-    for (int i = 0, row = first; i < q && inside; row += q - i, ++i)
-      for (int j = 0; i + j + 1 < q; ++j) addCell(row + j, row + q - i + j, row + j + 1);
-    if (inside == 0 && samples[vertices[0]].chart == samples[vertices[1]].chart) {
-      // Vertices may have their parameters from the chart of another triangle.
-      const auto &p = samples[vertices[0]].parameter, &r = samples[vertices[1]].parameter,
-                 &t = samples[vertices[2]].parameter;
-      const double turn = (r - p)[0] * (t - p)[1] - (r - p)[1] * (t - p)[0];
-      if (turn > 0 && std::abs(turn - (a.x() * b.y() - a.y() * b.x())) < 1e-6)
-        addCell(vertices[0], vertices[1], vertices[2]);
+  }
+  const int first = int(samples.size());
+  std::vector<std::array<int, 3>> lattice;
+  for (const auto f : mesh.faces()) {
+    if (f.idx() % 256 == 0) progress.check();
+    forEachChart(f, [&](int chart, const Transition& toChart) {
+      const Corners c = corners(f, toChart);
+      for (const auto& point : latticePoints(space.charts[chart], c, across)) {
+        const Eigen::Vector2d x = at(f, point.barycentric);
+        const auto& piece = layout_.pieceAt(f, x);
+        if (piece.chart != chart || piece.toChart != toChart) continue;
+        samples.push_back(sample(f, point.barycentric));
+        samples.back().weight = (control ? 1 : 1 - kVertexShare) * point.area;
+        lattice.push_back({chart, point.index[0], point.index[1]});
+      }
+    });
+  }
+  if (!control) cells_ = latticeCells(lattice, first);
+  for (const auto f : mesh.faces()) {
+    HalfedgeHandle h = mesh.halfedge_handle(f);
+    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
+      if (!mesh.is_boundary(mesh.opposite_halfedge_handle(h))) continue;
+      int parts = 1;
+      forEachChart(f, [&](int chart, const Transition& toChart) {
+        const Corners c = corners(f, toChart);
+        parts = std::max(parts, latticeParts(space.charts[chart], c[k], c[(k + 1) % 3], across));
+      });
+      const Corners c = corners(f);
+      for (int i = 0; i < parts; ++i) {
+        Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
+        barycentric[(k + 1) % 3] = (i + 0.5) / parts;
+        barycentric[k] = 1 - barycentric[(k + 1) % 3];
+        samples.push_back(sample(f, barycentric));
+        samples.back().weight = kBoundaryStrip * (c[(k + 1) % 3] - c[k]).norm() / parts;
+      }
     }
   }
   return samples;

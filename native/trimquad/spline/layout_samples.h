@@ -22,7 +22,8 @@ class LayoutSamples {
  public:
   LayoutSamples(const Region& region, const GridMap& map, const Layout& layout, const Progress& progress);
 
-  /// About sixteen to a knot rectangle, at least as dense as before; other places for `control` samples.
+  /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary. `control` samples lie at
+  /// other places and are denser.
   std::vector<LayoutSample> make(const JoinedSpace& space, bool control, const Progress& progress);
   /// Of the samples made last: small triangles between samples of one chart, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
@@ -32,8 +33,11 @@ class LayoutSamples {
 
  private:
   using Corners = std::array<Eigen::Vector2d, 3>;
-  Corners corners(FaceHandle f) const;
-  int latticeOrder(FaceHandle f, const JoinedSpace& space) const;
+  Corners corners(FaceHandle f, const Transition& toChart = {}) const;
+  Eigen::Vector2d at(FaceHandle f, const Eigen::Vector3d& barycentric) const;
+  double areaOf(FaceHandle f) const;
+  template <class Visit>
+  void forEachChart(FaceHandle f, const Visit& visit) const;
   LayoutSample sample(FaceHandle f, const Eigen::Vector3d& barycentric) const;
   void collectSingularCorners();
   Eigen::Vector2d regularised(int chart, const Eigen::Vector2d& x) const;
@@ -49,9 +53,9 @@ class LayoutSamples {
   };
   double area_ = 0, extent_ = 0;
   std::vector<std::vector<SingularCorner>> singular_;  ///< by chart
-  std::vector<int> order_;                             ///< by triangle
   std::vector<std::array<int, 3>> cells_;
   std::vector<Eigen::Vector3d> vertexPoint_, vertexNormal_;  ///< on the true surface
+  std::vector<Eigen::Vector3d> vertexMeshNormal_;
 };
 
 }  // namespace trimquad

@@ -190,7 +190,8 @@ double SplineSurface::wrappedU(double u) const {
   return u < lastU() ? std::max(u, firstU()) : firstU();
 }
 
-Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, Eigen::Vector2d guess) const {
+Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, Eigen::Vector2d guess,
+                                         double smallestStep) const {
   const auto admissible = [&](Eigen::Vector2d x) -> Eigen::Vector2d {
     return {closedU ? wrappedU(x[0]) : std::clamp(x[0], firstU(), lastU()),
             std::clamp(x[1], firstV(), lastV())};
@@ -231,7 +232,7 @@ Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, Eigen::Vector
     Eigen::Vector2d move(-(model(1, 1) * gradient[0] - model(0, 1) * gradient[1]) / det,
                          -(model(0, 0) * gradient[1] - model(1, 0) * gradient[0]) / det);
     const Eigen::Vector2d scale(std::max(1.0, std::abs(x[0])), std::max(1.0, std::abs(x[1])));
-    if ((move.array() / scale.array()).abs().maxCoeff() < 1e-15) break;
+    if ((move.array() / scale.array()).abs().maxCoeff() < smallestStep) break;
     // Near the foot the distance stands still within rounding long before the parameters do; there the
     // gradient decides.
     const double rounding = 1e-14 * (distance2 + p.norm() * std::sqrt(distance2));

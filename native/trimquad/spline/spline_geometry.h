@@ -88,7 +88,9 @@ struct SplineSurface {
 
   /// Parameters of the point closest to `p` among those reached from `guess` by damped Newton steps, kept
   /// inside the domain (wrapping around where the surface is closed in u: u is in [firstU, lastU)).
-  Eigen::Vector2d footPoint(const Eigen::Vector3d& p, Eigen::Vector2d guess) const;
+  /// \param step smallest last step, relative to the parameters; 1e-6 leaves the distance exact up to
+  /// rounding
+  Eigen::Vector2d footPoint(const Eigen::Vector3d& p, Eigen::Vector2d guess, double step = 1e-15) const;
 
   /// The exact curve v -> S(u, v).
   SpaceCurve curveAtU(double u) const;

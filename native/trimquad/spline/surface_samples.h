@@ -13,9 +13,14 @@ namespace trimquad {
 /// A point of a region, and where a spline surface comes closest to it.
 struct SurfaceSample {
   Eigen::Vector3d point, normal;
+  Eigen::Vector3d
+      meshNormal;             ///< of the triangles: differs where the surface bends more closely than they do
   Eigen::Vector2d parameter;  ///< quads; in a closed direction within one period of the seam
   double weight = 0;          ///< area of the chart that it stands for, quads^2
   double distance = 0;        ///< from the surface, along its normal: signed, model units
+
+  /// Whether a surface with the given normal has its outside here where the region has it.
+  bool agrees(const Eigen::Vector3d& n) const { return n.dot(normal) > 0 || n.dot(meshNormal) > 0; }
 };
 
 /// Samples of a region, dense enough for a spline space everywhere: the mesh vertices, points inside the
@@ -26,33 +31,21 @@ class SurfaceSamples {
   SurfaceSamples(const Region& region, const GridMap& map, const Chart& chart, double seam,
                  const Progress& progress);
 
-  /// Adds samples so that every knot rectangle under the region holds about sixteen. Samples that exist keep
-  /// their parameters; new ones start from the chart.
-  void refine(const SplineSpace& space, const Progress& progress);
-
-  /// Samples at other places, denser than those of `samples`; parameters as for new ones.
-  const std::vector<SurfaceSample>& control(const SplineSpace& space, const Progress& progress);
-
-  /// By sample: what the chart says.
-  const std::vector<Eigen::Vector2d>& chartParameters() const { return chartParameter_; }
-
-  std::vector<SurfaceSample> samples;
-  /// Small triangles between samples, to see how a residual varies.
+  /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary, with the chart's
+  /// parameters. `control` samples lie at other places and are denser.
+  std::vector<SurfaceSample> make(const SplineSpace& space, bool control, const Progress& progress);
+  /// Of the samples made last: small triangles between samples, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
 
   double chartArea() const { return chartArea_; }    ///< quads^2
   double triangleExtent() const { return extent_; }  ///< median side of a triangle's chart image, quads
-  /// `to` - `from`, by the shorter way around a closed chart.
-  Eigen::Vector2d difference(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:
   using Corners = std::array<Eigen::Vector2d, 3>;
   Corners chartCorners(HalfedgeHandle h) const;
   Eigen::Vector2d wrapped(Eigen::Vector2d x) const;
   SurfaceSample sample(HalfedgeHandle h, const Eigen::Vector3d& barycentric) const;
-  int latticeOrder(FaceHandle f, const SplineSpace& space) const;
-  void appendFace(FaceHandle f, int order, std::vector<SurfaceSample>& to) const;
-  void appendBoundary(HalfedgeHandle inner, int order, std::vector<SurfaceSample>& to) const;
+  double areaOf(FaceHandle f) const;
 
   const Region& region_;
   const SurfaceMesh& mesh_;
@@ -60,10 +53,7 @@ class SurfaceSamples {
   double seam_, period_ = 0, chartArea_ = 0, extent_ = 0;
   std::vector<HalfedgeHandle> boundary_;  ///< inner halfedges
   std::vector<std::array<int, 3>> cells_;
-  std::vector<int> order_, controlOrder_;           ///< by face; 0 where not sampled yet
-  std::vector<int> firstOfFace_, firstOfBoundary_;  ///< in `samples`
-  std::vector<SurfaceSample> control_;
-  std::vector<Eigen::Vector2d> chartParameter_;  ///< by sample
+  std::vector<SurfaceSample> vertices_;
 };
 
 }  // namespace trimquad

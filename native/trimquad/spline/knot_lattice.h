@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "trimquad/spline/spline_space.h"
+
+namespace trimquad {
+
+/// A point of the lattice that divides every knot rectangle of a space evenly.
+struct LatticePoint {
+  std::array<int, 2> index;  ///< along u and v; neighbours in the lattice differ by one
+  Eigen::Vector3d barycentric;
+  double area;  ///< of the part of the plane that it stands for, quads^2
+};
+
+/// The points of the lattice in a triangle of the parameter plane, `across` to a side of each knot rectangle.
+/// Triangles that fill the plane without overlap share out the lattice, up to rounding on their sides.
+std::vector<LatticePoint> latticePoints(const SplineSpace& space,
+                                        const std::array<Eigen::Vector2d, 3>& triangle, int across);
+
+/// Into how many parts to divide a segment of the parameter plane for as many samples.
+int latticeParts(const SplineSpace& space, const Eigen::Vector2d& a, const Eigen::Vector2d& b, int across);
+
+/// Triangles between samples on neighbouring points of a lattice.
+/// \param chartAndIndex by sample, the first of which has the number `first`
+std::vector<std::array<int, 3>> latticeCells(const std::vector<std::array<int, 3>>& chartAndIndex, int first);
+
+}  // namespace trimquad
