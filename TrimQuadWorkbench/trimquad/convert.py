@@ -16,6 +16,8 @@ from .source import Source
 # Stages keep to this part of the tolerance, so that what they add up to stays under it; by kind of input. Between curved
 # surfaces, deviations can only be measured up to the chord errors of both.
 FIT_MARGIN = {"cad": 0.55, "mesh": 0.75}
+# A fit that cannot come that close is taken at this part of the tolerance.
+ENOUGH = 0.95
 # A face that crosses itself beyond its trim, or in a bend that the tolerance left loose, is fitted again this many times,
 # each time to this part of the tolerance before.
 REFITS = 3
@@ -265,7 +267,8 @@ def _grid_map(item, index, result, run):
 def _fit(item, tolerance, result, progress):
     options = result.options
     threads = max(1, options.threads // len(result.regions))
-    return load().fit_surface(item.mapped_region, item.grid, tolerance, options.degree, threads, progress)
+    enough = ENOUGH * options.tolerance if item.refits == 0 else tolerance
+    return load().fit_surface(item.mapped_region, item.grid, tolerance, enough, options.degree, threads, progress)
 
 
 def _map_region(item, index, result, progress):

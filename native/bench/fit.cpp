@@ -62,7 +62,7 @@ void fitSheet(benchmark::State& state) {
       map.corner[h.idx()] = map.scale.round(Eigen::Vector2d(p.x(), p.y()));
     }
   size_t poles = 0;
-  for (auto _ : state) poles = fitSurface(region, map, {0.02, 3}, Progress()).surface.poles.size();
+  for (auto _ : state) poles = fitSurface(region, map, {.tolerance = 0.02, .degree = 3}, Progress()).surface.poles.size();
   state.counters["poles"] = double(poles);
   state.counters["triangles"] = double(soup.triangles.size());
 }

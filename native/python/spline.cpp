@@ -28,13 +28,14 @@ void bindSpline(py::module_& m) {
       .def_readonly("rounds", &FittedSurface::rounds);
   m.def(
       "fit_surface",
-      [](const Region& region, const GridMap& map, double tolerance, int degree, int threads,
+      [](const Region& region, const GridMap& map, double tolerance, double enough, int degree, int threads,
          const Progress& progress) {
-        return fitSurface(region, map, {.tolerance = tolerance, .degree = degree, .threads = threads},
+        return fitSurface(region, map,
+                          {.tolerance = tolerance, .enough = enough, .degree = degree, .threads = threads},
                           progress);
       },
-      py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("degree"), py::arg("threads"),
-      py::arg("progress"), Released());
+      py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("enough"), py::arg("degree"),
+      py::arg("threads"), py::arg("progress"), Released());
 
   py::class_<SplineModel>(m, "SplineModel")
       .def_readonly("loose_edges", &SplineModel::looseEdges)

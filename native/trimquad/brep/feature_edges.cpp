@@ -312,8 +312,8 @@ FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const S
     dropDangling(model, edges.free, result.cut);
   }
   for (size_t e = 0; e < model.edges.size(); ++e) {
-    const bool byDefault =
-        result.cut[e] ? options.alignBoundary : options.sharp == Sharp::Align && edges.sharp[e];
+    // A sharp edge that cannot be cut is still sharp: no smooth surface follows it.
+    const bool byDefault = result.cut[e] ? options.alignBoundary : bool(edges.sharp[e]);
     result.aligned.push_back((byDefault || chosenAligned[e]) && !freed[e]);
     result.inner.push_back(result.aligned[e] && !result.cut[e]);
     result.cut[e] |= result.inner[e];

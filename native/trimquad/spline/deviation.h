@@ -11,6 +11,9 @@ namespace trimquad {
 /// rounding then.
 inline constexpr double kFootStep = 1e-6;
 
+/// Part of the samples at which the surface may be turned over while parameters are still corrected.
+inline constexpr double kFewTurned = 0.05;
+
 /// How far a region's samples lie from a surface.
 struct Deviation {
   double max = 0, rms = 0;

@@ -26,9 +26,6 @@ constexpr double kCorrectedWins = 0.7;
 constexpr double kEmphasis = 10;
 constexpr double kWorstPart = 0.3;
 constexpr int kPatience = 4;
-/// Part of the samples at which the surface may be turned over, next to singularities, while parameters are
-/// corrected.
-constexpr double kFewTurned = 0.002;
 /// Charts that a foot may cross on its way.
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
@@ -84,10 +81,12 @@ class LayoutFit {
       : region_(region),
         layout_(layout),
         tolerance_(options.tolerance),
+        enough_(std::max(options.tolerance, options.enough)),
         threads_(options.threads),
         progress_(progress),
         sides_(borderSides(layout)),
         space_(layout),
+        singular_(space_.singularCorners()),
         source_(region, map, layout, progress) {
     for (int c = 0; c < int(layout.charts.size()); ++c)
       space_.charts.push_back(initialSpace(c, options.degree));
@@ -95,10 +94,16 @@ class LayoutFit {
     const double inQuads = tolerance_ / quad;
     fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
     fairness_.withoutData = std::max(1e3 * fairness_.withData, 1e-9);
-    narrowest_ = std::exp2(std::floor(std::log2(source_.triangleExtent() / 4)));
+    narrowest_ = std::exp2(std::floor(std::log2(source_.triangleExtent() / 16)));
   }
 
-  FittedSurface run() {
+  FittedSurface run() try { return rounds(); } catch (const Error& error) {
+    if (!kept_ || error.kind() != Error::Kind::Stage) throw;
+    return std::move(*kept_);
+  }
+
+ private:
+  FittedSurface rounds() {
     makeSamples();
     for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
       if (!solved_) solve();
@@ -106,7 +111,9 @@ class LayoutFit {
       if (rounds_ == 1) start_ = best_ = deviation_.max;
       best_ = std::min(best_, deviation_.max);
       if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
-      if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified()) return std::move(result_);
+      if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified(tolerance_))
+        return std::move(result_);
+      keepIfEnough();
       if (correctionPays()) {
         correct();
       } else {
@@ -186,6 +193,12 @@ class LayoutFit {
     failing_ = failing(samples_, threshold(deviation_.max));
   }
 
+  /// There the surfaces' parameters are bent sharply, and feet would pile up on some of their sheets.
+  bool isNextToSingularity(const LayoutSample& s) const {
+    return std::any_of(singular_[s.chart].begin(), singular_[s.chart].end(),
+                       [&](const Eigen::Vector2d& x) { return (x - s.parameter).norm() < kStiffReach; });
+  }
+
   /// The foot of a point on the surfaces, from a place near it, over borders where need be.
   Place foot(const Eigen::Vector3d& p, Place from, Place& start) const {
     const auto distance = [&](const Place& x) {
@@ -203,7 +216,8 @@ class LayoutFit {
       for (const auto& side : sides_[at.chart]) {
         const double depth = (at.parameter - side.start).dot(side.inward);
         const double before = (start.parameter - side.start).dot(side.inward);
-        if (depth > kOnLine || before < -kOnLine) continue;
+        // A crease's other side is another sheet.
+        if (depth > kOnLine || before < -kOnLine || side.border->feature) continue;
         // Where the way from the start meets the line.
         const double part = before - depth > kOnLine ? before / (before - depth) : 1;
         const double s =
@@ -245,7 +259,7 @@ class LayoutFit {
         const bool near = move[0] <= space.u.width(space.u.spanOf(at.parameter[0])) &&
                           move[1] <= space.v.width(space.v.spanOf(at.parameter[1]));
         turnedOver[i] = !s.agrees(normal);
-        feet[i] = near && !turnedOver[i] ? at : from;
+        feet[i] = near && !turnedOver[i] && !isNextToSingularity(s) ? at : from;
       }
     });
     return deviationOf(samples, turnedOver);
@@ -312,14 +326,23 @@ class LayoutFit {
     solved_ = true;
   }
 
-  bool verified() {
+  /// Keeps the surface for the case that none comes closer.
+  void keepIfEnough() {
+    if (deviation_.max > enough_ || deviation_.turnedOver > 0) return;
+    if (kept_ && deviation_.max > 0.95 * kept_->maxDeviation) return;
+    const auto failing = failing_;
+    if (verified(enough_)) kept_ = result_;
+    failing_ = failing;
+  }
+
+  bool verified(double tolerance) {
     auto control = source_.make(space_, true, progress_);
     std::vector<Place> feet;
     const Deviation found = measure(control, feet);
     result_.maxDeviation = std::max(found.max, deviation_.max);
     result_.rmsDeviation = found.rms;
     result_.rounds = rounds_;
-    if (found.max <= tolerance_ && found.turnedOver == 0) return true;
+    if (found.max <= tolerance && found.turnedOver == 0) return true;
     failing_ = failing(control, threshold(found.max));
     deviation_.turnedOver = found.turnedOver;
     return false;
@@ -433,14 +456,17 @@ class LayoutFit {
   const Region& region_;
   const Layout& layout_;
   double tolerance_;
+  double enough_;
   int threads_;
   const Progress& progress_;
   std::vector<std::vector<BorderSide>> sides_;  ///< by chart
   JoinedSpace space_;
+  std::vector<std::vector<Eigen::Vector2d>> singular_;  ///< corners of charts in singularities, by chart
   LayoutSamples source_;
   Fairness fairness_;
   double narrowest_ = 0;
   FittedSurface result_;
+  std::optional<FittedSurface> kept_;  ///< within what is enough
   std::vector<LayoutSample> samples_;
   std::vector<std::array<int, 3>> cells_;
   std::vector<double> emphasis_;

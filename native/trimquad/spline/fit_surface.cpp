@@ -167,6 +167,7 @@ class Fit {
       const Progress& progress)
       : region_(region),
         tolerance_(options.tolerance),
+        enough_(std::max(options.tolerance, options.enough)),
         threads_(options.threads),
         progress_(progress),
         space_(initialSpace(map, chart, seam, options.degree)),
@@ -177,11 +178,17 @@ class Fit {
     // is below 3 % of the tolerance times the surface's bending per quad.
     fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
     fairness_.withoutData = std::max(1e3 * fairness_.withData, 1e-9);
-    narrowest_ = std::exp2(std::floor(std::log2(source_.triangleExtent() / 4)));
+    narrowest_ = std::exp2(std::floor(std::log2(source_.triangleExtent() / 16)));
   }
 
   /// Runs rounds until the tolerance holds.
-  FittedSurface run() {
+  FittedSurface run() try { return rounds(); } catch (const Error& error) {
+    if (!kept_ || error.kind() != Error::Kind::Stage) throw;
+    return std::move(*kept_);
+  }
+
+ private:
+  FittedSurface rounds() {
     makeSamples();
     for (rounds_ = 1; rounds_ <= kMaxRounds; ++rounds_) {
       if (!solved_) solve();
@@ -189,7 +196,9 @@ class Fit {
       if (rounds_ == 1) start_ = best_ = deviation_.max;
       best_ = std::min(best_, deviation_.max);
       if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
-      if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified()) return std::move(result_);
+      if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified(tolerance_))
+        return std::move(result_);
+      keepIfEnough();
       if (correctionPays()) {
         correct();
       } else {
@@ -263,7 +272,16 @@ class Fit {
     solved_ = !keepFeet;
   }
 
-  bool verified() {
+  /// Keeps the surface for the case that none comes closer.
+  void keepIfEnough() {
+    if (deviation_.max > enough_ || deviation_.turnedOver > 0) return;
+    if (kept_ && deviation_.max > 0.95 * kept_->maxDeviation) return;
+    const auto failing = failing_;
+    if (verified(enough_)) kept_ = result_;
+    failing_ = failing;
+  }
+
+  bool verified(double tolerance) {
     auto control = source_.make(space_, true, progress_);
     std::vector<Eigen::Vector2d> feet;
     const Deviation found = measure(result_.surface, space_, control, feet, threads_, progress_);
@@ -271,7 +289,7 @@ class Fit {
     result_.maxDeviation = std::max(found.max, deviation_.max);
     result_.rmsDeviation = found.rms;
     result_.rounds = rounds_;
-    if (found.max <= tolerance_ && found.turnedOver == 0) return true;
+    if (found.max <= tolerance && found.turnedOver == 0) return true;
     failing_ = failing(control, threshold(found.max));
     deviation_.turnedOver = found.turnedOver;
     return false;
@@ -287,7 +305,7 @@ class Fit {
 
   bool correctionPays() {
     const bool early = deviation_.max > kCorrectionStarts * tolerance_ && !stalled();
-    if (deviation_.turnedOver > 0) return false;
+    if (deviation_.turnedOver > kFewTurned * double(samples_.size())) return false;
     if (deviation_.max <= tolerance_ || early || corrections_ >= kMaxCorrections) return false;
     if (corrections_ > 0 && deviation_.max > kCorrectionPays * previous_.max &&
         deviation_.rms > kCorrectionPays * previous_.rms)
@@ -321,6 +339,7 @@ class Fit {
 
   const Region& region_;
   double tolerance_;
+  double enough_;
   int threads_;
   const Progress& progress_;
   SplineSpace space_;
@@ -330,6 +349,7 @@ class Fit {
   Fairness fairness_;
   double narrowest_ = 0;
   FittedSurface result_;
+  std::optional<FittedSurface> kept_;  ///< within what is enough
   Deviation deviation_, previous_;
   std::vector<Eigen::Vector2d> failing_, feet_;
   std::vector<double> emphasis_;  ///< by sample: factor of its weight

@@ -10,6 +10,7 @@ namespace trimquad {
 
 struct FitOptions {
   double tolerance = 1e-3;  ///< largest distance between surface and region, model units
+  double enough = 0;        ///< taken where `tolerance` cannot be reached; at least `tolerance`
   int degree = 3;           ///< 2..5
   int threads = 1;          ///< the result does not depend on it
 };

@@ -129,9 +129,8 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
     }
     return farthest;
   };
-  const auto isSingular = [](const Layout::Point& p) { return p.inner() && p.quarters != 4; };
-  const double reachStart = isSingular(startPoint) ? reach(true) : 0,
-               reachEnd = isSingular(endPoint) ? reach(false) : 0;
+  const double reachStart = startPoint.isSingular() ? reach(true) : 0,
+               reachEnd = endPoint.isSingular() ? reach(false) : 0;
   const auto cosine = [](const Layout::Point& p) { return std::cos(2 * M_PI / p.quarters); };
   const auto tangentFactor = [&](double s) {
     double c = 0;
@@ -226,6 +225,18 @@ Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions
   return best;
 }
 
+std::vector<std::vector<Eigen::Vector2d>> JoinedSpace::singularCorners() const {
+  std::vector<std::vector<Eigen::Vector2d>> result(layout_.charts.size());
+  for (const auto& border : layout_.borders)
+    for (const int side : {0, 1}) {
+      if (layout_.points[border.startPoint].isSingular())
+        result[border.chart[side]].push_back(border.start[side]);
+      if (layout_.points[border.endPoint].isSingular())
+        result[border.chart[side]].push_back(border.end[side]);
+    }
+  return result;
+}
+
 std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
   std::vector<Condition> result;
   const auto offset = offsets();
@@ -246,9 +257,13 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
 
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(unknowns, 3);
+  const auto corners = singularCorners();
   for (std::size_t c = 0; c < charts.size(); ++c) {
     progress.check();
-    charts[c].addNormalEquations(data[c], fairness, middle, offset[c], entries, rhs);
+    Fairness here = fairness;
+    here.stiffAt = corners[c];
+    here.stiffReach = kStiffReach;
+    charts[c].addNormalEquations(data[c], here, middle, offset[c], entries, rhs);
   }
   const auto rows = conditions();
   for (const auto& row : rows)

@@ -9,6 +9,9 @@
 
 namespace trimquad {
 
+/// How far from a singularity narrow knot rectangles count in full towards fairness, quads.
+inline constexpr double kStiffReach = 0.25;
+
 /// Splines over all charts of a layout, one tensor-product space each, that agree along the borders.
 class JoinedSpace {
  public:
@@ -20,6 +23,8 @@ class JoinedSpace {
   double tangentWeight = 3;
 
   int poles() const;
+  /// By chart of the layout: its corners in singularities.
+  std::vector<std::vector<Eigen::Vector2d>> singularCorners() const;
 
   /// The spline surfaces that minimise the sum over all charts of what SplineSpace::leastSquares minimises,
   /// subject to: both sides of a border have the same curve, whatever their knots; they have the same

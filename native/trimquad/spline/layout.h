@@ -21,6 +21,7 @@ struct Layout {
         halfedge;     ///< the inner halfedge of the boundary that it lies in, if it does and is no vertex
     double part = 0;  ///< how far along the halfedge, 0..1
     bool inner() const { return quarters != 0; }
+    bool isSingular() const { return inner() && quarters != 4; }
   };
 
   /// A straight stretch of a grid line between two charts, directed so that the first one lies to its left.

@@ -10,6 +10,8 @@ namespace trimquad {
 namespace {
 
 constexpr int kSamplesAcrossSpan = 4;
+/// One triangle in this many is smaller than the extent that is given for them.
+constexpr std::size_t kSmallTriangles = 20;
 /// Part of the weight that the mesh's vertices carry.
 constexpr double kVertexShare = 0.5;
 /// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
@@ -17,6 +19,8 @@ constexpr double kBoundaryStrip = 0.25;
 
 /// How far from a singularity parameters are moved, quads.
 constexpr double kSingularReach = 2;
+/// How far from one the samples are denser, knot intervals.
+constexpr double kFineIntervals = 2;
 
 }  // namespace
 
@@ -38,13 +42,13 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
     for (const auto v : mesh.fv_range(f)) vertexNormal_[v.idx()] += (p[1] - p[0]).cross(p[2] - p[0]);
   }
   collectSingularCorners();
-  std::nth_element(extents.begin(), extents.begin() + extents.size() / 2, extents.end());
-  extent_ = extents[extents.size() / 2];
+  const std::size_t small = extents.size() / kSmallTriangles;
+  std::nth_element(extents.begin(), extents.begin() + small, extents.end());
+  extent_ = extents[small];
   for (const auto v : mesh.vertices()) {
     if (v.idx() % 1024 == 0) progress.check();
     vertexPoint_.push_back(mesh.point(v));
     vertexNormal_[v.idx()].normalize();
-    vertexMeshNormal_.push_back(vertexNormal_[v.idx()]);
     if (!region.surface) continue;
     const auto foot = region.surface->closestFacing(mesh.point(v), vertexNormal_[v.idx()]);
     vertexNormal_[v.idx()] = foot.normal;
@@ -55,9 +59,7 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
 
 void LayoutSamples::collectSingularCorners() {
   singular_.resize(layout_.charts.size());
-  const auto isSingular = [&](int point) {
-    return layout_.points[point].inner() && layout_.points[point].quarters != 4;
-  };
+  const auto isSingular = [&](int point) { return layout_.points[point].isSingular(); };
   std::map<int, double> reach;  // by point
   for (const auto& border : layout_.borders)
     for (const int point : {border.startPoint, border.endPoint}) {
@@ -75,6 +77,17 @@ void LayoutSamples::collectSingularCorners() {
       singular_[border.chart[side]].push_back({atStart ? border.start[side] : border.end[side],
                                                reach.at(point), 4.0 / layout_.points[point].quarters});
     }
+}
+
+/// Whether a triangle of a chart's plane comes within a few knot intervals of a singularity.
+bool LayoutSamples::isNearSingularity(int chart, const Corners& triangle, const SplineSpace& space) const {
+  const Eigen::Vector2d low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]),
+                        high = triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]);
+  return std::any_of(singular_[chart].begin(), singular_[chart].end(), [&](const SingularCorner& corner) {
+    const Eigen::Vector2d away = corner.at - corner.at.cwiseMax(low).cwiseMin(high);
+    return std::abs(away[0]) < kFineIntervals * space.u.width(space.u.spanOf(corner.at[0])) &&
+           std::abs(away[1]) < kFineIntervals * space.v.width(space.v.spanOf(corner.at[1]));
+  });
 }
 
 Eigen::Vector2d LayoutSamples::regularised(int chart, const Eigen::Vector2d& x) const {
@@ -136,13 +149,13 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
   const auto& piece = layout_.pieceAt(f, x);
   s.chart = piece.chart;
   s.parameter = regularised(piece.chart, Layout::apply(piece.toChart, layout_.scale, x));
+  // On a crease the vertex's own normal belongs to one side only.
+  s.normal = s.meshNormal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
   if (vertex) {
     s.point = vertexPoint_[vertex->idx()];
     s.normal = vertexNormal_[vertex->idx()];
-    s.meshNormal = vertexMeshNormal_[vertex->idx()];
     return s;
   }
-  s.normal = s.meshNormal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
   if (region_.surface) {
     const auto foot = region_.surface->closestFacing(s.point, s.normal);
     s.point = foot.point;
@@ -176,13 +189,15 @@ std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool con
     if (f.idx() % 256 == 0) progress.check();
     forEachChart(f, [&](int chart, const Transition& toChart) {
       const Corners c = corners(f, toChart);
-      for (const auto& point : latticePoints(space.charts[chart], c, across)) {
+      // Towards a singularity the parameters drift apart, so there the lattice is twice as fine.
+      const bool fine = isNearSingularity(chart, c, space.charts[chart]);
+      for (const auto& point : latticePoints(space.charts[chart], c, fine ? 2 * across : across)) {
         const Eigen::Vector2d x = at(f, point.barycentric);
         const auto& piece = layout_.pieceAt(f, x);
         if (piece.chart != chart || piece.toChart != toChart) continue;
         samples.push_back(sample(f, point.barycentric));
         samples.back().weight = (control ? 1 : 1 - kVertexShare) * point.area;
-        lattice.push_back({chart, point.index[0], point.index[1]});
+        lattice.push_back({2 * chart + fine, point.index[0], point.index[1]});
       }
     });
   }

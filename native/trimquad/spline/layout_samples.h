@@ -29,7 +29,7 @@ class LayoutSamples {
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
 
   double mapArea() const { return area_; }           ///< quads^2
-  double triangleExtent() const { return extent_; }  ///< median side of a triangle's image, quads
+  double triangleExtent() const { return extent_; }  ///< side of a small triangle's image, quads
 
  private:
   using Corners = std::array<Eigen::Vector2d, 3>;
@@ -40,6 +40,7 @@ class LayoutSamples {
   void forEachChart(FaceHandle f, const Visit& visit) const;
   LayoutSample sample(FaceHandle f, const Eigen::Vector3d& barycentric) const;
   void collectSingularCorners();
+  bool isNearSingularity(int chart, const Corners& triangle, const SplineSpace& space) const;
   Eigen::Vector2d regularised(int chart, const Eigen::Vector2d& x) const;
 
   const Region& region_;
@@ -55,7 +56,6 @@ class LayoutSamples {
   std::vector<std::vector<SingularCorner>> singular_;  ///< by chart
   std::vector<std::array<int, 3>> cells_;
   std::vector<Eigen::Vector3d> vertexPoint_, vertexNormal_;  ///< on the true surface
-  std::vector<Eigen::Vector3d> vertexMeshNormal_;
 };
 
 }  // namespace trimquad

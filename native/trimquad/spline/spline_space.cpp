@@ -150,6 +150,13 @@ std::vector<double> SplineLine::knots() const {
   return result;
 }
 
+bool Fairness::isStiff(const SplineLine& u, int i, const SplineLine& v, int j) const {
+  const Eigen::Vector2d low(u.breaks[i], v.breaks[j]), high(u.breaks[i + 1], v.breaks[j + 1]);
+  return std::any_of(stiffAt.begin(), stiffAt.end(), [&](const Eigen::Vector2d& x) {
+    return (x - x.cwiseMax(low).cwiseMin(high)).norm() < stiffReach;
+  });
+}
+
 /// Calls emit(span in u, span in v, normal matrix, right-hand side) for every knot rectangle; local unknown
 /// (a, b) has the number a + (degreeU + 1) * b.
 template <class Emit>
@@ -178,7 +185,7 @@ void SplineSpace::forEachRectangle(const std::vector<Datum>& data, const Fairnes
       const bool hasData = next != order.end() && next->first == i + u.spans() * j;
       // Below one quad the energy counts by the knot rectangle: it must not hold back knots that follow a
       // crease.
-      const double size = std::clamp(u.width(i) * v.width(j), 1e-3, 1.0);
+      const double size = fairness.isStiff(u, i, v, j) ? 1 : std::clamp(u.width(i) * v.width(j), 1e-3, 1.0);
       const double lambda = size * size * (hasData ? fairness.withData : fairness.withoutData);
       for (int b = 0; b < nv; ++b)
         for (int d = 0; d < nv; ++d)

@@ -42,6 +42,11 @@ struct Datum {
 /// Times the square of a knot rectangle's area where that is below 1 quad^2.
 struct Fairness {
   double withData = 0, withoutData = 0;  ///< on knot rectangles that hold data, and on the others
+  /// Knot rectangles within `stiffReach` of these count as larger ones do.
+  std::vector<Eigen::Vector2d> stiffAt = {};
+  double stiffReach = 0;  ///< quads
+
+  bool isStiff(const SplineLine& u, int i, const SplineLine& v, int j) const;
 };
 
 /// Tensor-product splines over a rectangle of the parameter plane.

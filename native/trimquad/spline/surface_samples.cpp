@@ -9,6 +9,8 @@ namespace trimquad {
 namespace {
 
 constexpr int kSamplesAcrossSpan = 4;
+/// One triangle in this many is smaller than the extent that is given for them.
+constexpr std::size_t kSmallTriangles = 20;
 /// Part of the weight that the mesh's vertices carry.
 constexpr double kVertexShare = 0.5;
 /// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
@@ -42,8 +44,9 @@ SurfaceSamples::SurfaceSamples(const Region& region, const GridMap& map, const C
       vertices_[v].weight += kVertexShare * area / 3;
     }
   }
-  std::nth_element(extents.begin(), extents.begin() + extents.size() / 2, extents.end());
-  extent_ = extents[extents.size() / 2];
+  const std::size_t small = extents.size() / kSmallTriangles;
+  std::nth_element(extents.begin(), extents.begin() + small, extents.end());
+  extent_ = extents[small];
   for (const auto v : mesh_.vertices()) {
     if (v.idx() % 1024 == 0) progress.check();
     auto& s = vertices_[v.idx()];

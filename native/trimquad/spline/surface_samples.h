@@ -38,7 +38,7 @@ class SurfaceSamples {
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
 
   double chartArea() const { return chartArea_; }    ///< quads^2
-  double triangleExtent() const { return extent_; }  ///< median side of a triangle's chart image, quads
+  double triangleExtent() const { return extent_; }  ///< side of a small triangle's chart image, quads
 
  private:
   using Corners = std::array<Eigen::Vector2d, 3>;

@@ -36,7 +36,8 @@ Built build(Model model, const std::vector<GridMap>& maps, double tolerance) {
   std::vector<const GridMap*> mapPointers;
   std::vector<const FittedSurface*> fitPointers;
   for (std::size_t r = 0; r < maps.size(); ++r) {
-    built.fitted.push_back(fitSurface(built.model.regions[r], maps[r], {tolerance, 3}, Progress()));
+    built.fitted.push_back(
+        fitSurface(built.model.regions[r], maps[r], {.tolerance = tolerance, .degree = 3}, Progress()));
     EXPECT_LE(built.fitted[r].maxDeviation, tolerance);
     mapPointers.push_back(&maps[r]);
   }

@@ -58,7 +58,7 @@ Figures deviation(const FittedSurface& fitted, const AnalyticRegion& a, int perS
 /// Fits and measures again.
 FittedSurface fit(AnalyticRegion& a, double tolerance, int degree = 3) {
   a.build();
-  const auto result = fitSurface(a.region, a.map, {tolerance, degree}, Progress());
+  const auto result = fitSurface(a.region, a.map, {.tolerance = tolerance, .degree = degree}, Progress());
   EXPECT_LE(result.maxDeviation, tolerance);
   if (a.surface) {
     EXPECT_LE(deviation(result, a, 150).max, 1.2 * tolerance);
@@ -185,14 +185,14 @@ TEST(FitSurface, unreachableTolerancesSayHowFarTheyCame) {
   roof.point = [](double u, double v) { return Eigen::Vector3d(u, v, std::abs(u - 0.7 * v)); };
   roof.build();
   try {
-    fitSurface(roof.region, roof.map, {1e-4, 3}, Progress());
+    fitSurface(roof.region, roof.map, {.tolerance = 1e-4, .degree = 3}, Progress());
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::Stage);
     EXPECT_NE(error.message().find("comes within"), std::string::npos);
   }
-  EXPECT_THROW(fitSurface(roof.region, roof.map, {0, 3}, Progress()), Error);
-  EXPECT_THROW(fitSurface(roof.region, roof.map, {1, 6}, Progress()), Error);
+  EXPECT_THROW(fitSurface(roof.region, roof.map, {.tolerance = 0, .degree = 3}, Progress()), Error);
+  EXPECT_THROW(fitSurface(roof.region, roof.map, {.tolerance = 1, .degree = 6}, Progress()), Error);
 }
 
 TEST(FitSurface, sameInputGivesTheSamePoles) {
@@ -205,7 +205,7 @@ TEST(FitSurface, cancels) {
   sheet.build();
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(fitSurface(sheet.region, sheet.map, {1e-4, 3}, progress), Error);
+  EXPECT_THROW(fitSurface(sheet.region, sheet.map, {.tolerance = 1e-4, .degree = 3}, progress), Error);
 }
 
 }  // namespace
