@@ -14,6 +14,7 @@ py::dict countersOf(const MapCounters& counters) {
   all["flipped_before"] = counters.flippedBefore;
   all["path_steps"] = counters.pathSteps;
   all["untangle_iterations"] = counters.untangleIterations;
+  all["stiffenings"] = counters.stiffenings;
   all["start"] = counters.start;
   all["convex_start"] = counters.convexStart;
   all["scaffolded"] = counters.scaffolded;

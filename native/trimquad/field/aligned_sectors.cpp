@@ -19,6 +19,43 @@ double turnAcross(const SurfaceMesh& mesh, const Transport& transport, const Cro
   return std::remainder(whole, 2 * std::numbers::pi);
 }
 
+/// The third corner of the triangle left of `h`; if that triangle is a part of one that was split at a point
+/// inside, the third corner of the whole.
+VertexHandle apexOf(const SurfaceMesh& mesh, HalfedgeHandle h) {
+  const VertexHandle apex = mesh.to_vertex_handle(mesh.next_halfedge_handle(h));
+  if (mesh.is_boundary(apex) || mesh.valence(apex) != 3) return apex;
+  for (const auto w : mesh.vv_range(apex))
+    if (w != mesh.from_vertex_handle(h) && w != mesh.to_vertex_handle(h)) return w;
+  return apex;
+}
+
+/// The edges to drop, where `dropped` alone would not do: an edge whose ends another two edges still join,
+/// all three around one triangle, would stay as a chord, with its triangle's corners in a line. It stays
+/// aligned, and the two others go.
+std::vector<EdgeHandle> withoutChords(const SurfaceMesh& mesh, const std::vector<char>& aligned,
+                                      const std::vector<EdgeHandle>& dropped) {
+  std::vector<char> remains = aligned;
+  for (const auto e : dropped) remains[e.idx()] = 0;
+  for (const auto e : dropped)
+    for (int side = 0; side < 2; ++side) {
+      const auto h = mesh.halfedge_handle(e, side);
+      if (mesh.is_boundary(h)) continue;
+      const auto apex = apexOf(mesh, h);
+      const auto toFirst = mesh.find_halfedge(apex, mesh.from_vertex_handle(h)),
+                 toSecond = mesh.find_halfedge(apex, mesh.to_vertex_handle(h));
+      if (!toFirst.is_valid() || !toSecond.is_valid()) continue;
+      const auto first = mesh.edge_handle(toFirst), second = mesh.edge_handle(toSecond);
+      if (!remains[first.idx()] || !remains[second.idx()]) continue;
+      remains[e.idx()] = 1;
+      remains[first.idx()] = remains[second.idx()] = 0;
+      break;
+    }
+  std::vector<EdgeHandle> result;
+  for (const auto e : mesh.edges())
+    if (aligned[e.idx()] && !remains[e.idx()]) result.push_back(e);
+  return result;
+}
+
 /// How straight the edge of `out` continues another one of `spokes`: 1 for a straight line, -1 for a hairpin.
 double straightness(const SurfaceMesh& mesh, HalfedgeHandle out, const std::vector<HalfedgeHandle>& spokes) {
   double best = -1;
@@ -68,8 +105,7 @@ std::vector<EdgeHandle> collapsingEdges(const SurfaceMesh& mesh, const Transport
     }
   }
   std::sort(dropped.begin(), dropped.end());
-  dropped.erase(std::unique(dropped.begin(), dropped.end()), dropped.end());
-  return dropped;
+  return withoutChords(mesh, aligned, dropped);
 }
 
 }  // namespace trimquad

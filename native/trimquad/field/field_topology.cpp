@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "trimquad/base/error.h"
 #include "trimquad/field/loop_turning.h"
@@ -17,6 +18,29 @@ int quarters(double x) {
   const double count = x / kQuarter;
   TRIMQUAD_ASSERT(std::abs(count - std::round(count)) < 0.05);
   return int(std::lround(count));
+}
+
+/// Lets no vertex have a cone without an angle, index 4 and above, as the tip of a spike would: a quarter
+/// turn at a time goes to the neighbour of least index, across whose edge the field then turns by more than
+/// it must.
+void spreadSpikes(const SurfaceMesh& mesh, std::vector<double>& turn, CrossField& field) {
+  constexpr int kMost = 3;
+  for (const auto v : mesh.vertices())
+    while (field.index[v.idx()] > kMost) {
+      std::optional<HalfedgeHandle> best;
+      for (const auto in : mesh.vih_range(v)) {
+        const auto w = mesh.from_vertex_handle(in);
+        if (mesh.is_boundary(w) || field.index[w.idx()] >= kMost) continue;
+        if (!best || field.index[w.idx()] < field.index[mesh.from_vertex_handle(*best).idx()]) best = in;
+      }
+      if (!best) break;
+      ++field.matching[best->idx()];
+      --field.matching[mesh.opposite_halfedge_handle(*best).idx()];
+      turn[best->idx()] -= kQuarter;
+      turn[mesh.opposite_halfedge_handle(*best).idx()] += kQuarter;
+      --field.index[v.idx()];
+      ++field.index[mesh.from_vertex_handle(*best).idx()];
+    }
 }
 
 }  // namespace
@@ -43,6 +67,7 @@ void settleTopology(const SurfaceMesh& mesh, const Transport& transport, CrossFi
     for (const auto out : mesh.voh_range(v)) sum += turn[mesh.prev_halfedge_handle(out).idx()];
     total += field.index[v.idx()] = quarters(sum);
   }
+  spreadSpikes(mesh, turn, field);
   field.loopTurns.clear();
   for (const auto& loop : boundaryLoops(mesh)) {
     double sum = tangentTurn(mesh, loop);

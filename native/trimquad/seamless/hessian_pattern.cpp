@@ -1,5 +1,6 @@
 #include "trimquad/seamless/hessian_pattern.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 
 #include "trimquad/base/error.h"
@@ -88,6 +89,17 @@ void HessianPattern::add(int t, const Eigen::Matrix<double, 6, 6>& second,
   }
   const auto begin = coefficients_.begin() + triangle.firstCoefficient,
              end = coefficients_.begin() + triangles_[t + 1].firstCoefficient;
+  const auto terms = size_t(end - begin), unknowns = size_t(triangle.unknowns);
+  if (terms * terms > 4 * unknowns * unknowns) {
+    // Long sums of the same unknowns, as along aligned curves: dense, the six variables cost less than their
+    // terms.
+    Eigen::Matrix<double, 6, Eigen::Dynamic> byUnknown =
+        Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, triangle.unknowns);
+    for (auto s = begin; s != end; ++s) byUnknown(s->corner, s->unknown) += s->value;
+    const Eigen::MatrixXd whole = byUnknown.transpose() * (second * byUnknown);
+    for (Eigen::Index i = 0; i < whole.size(); ++i) values[places[i]] += whole.data()[i];
+    return;
+  }
   for (auto s = begin; s != end; ++s)
     for (auto r = begin; r != end; ++r)
       values[places[s->unknown * triangle.unknowns + r->unknown]] +=

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace trimquad {
 
@@ -55,6 +56,10 @@ void MapEnergy::setScaffold(int first, double weight) {
   }
 }
 
+void MapEnergy::stiffen(const std::vector<double>& factor) {
+  for (size_t f = 0; f < local_.size(); ++f) local_[f].area *= factor[f];
+}
+
 MapEnergy::Jacobian MapEnergy::jacobian(int face, const Eigen::VectorXd& x) const {
   const auto& local = local_[face];
   Eigen::Matrix<double, 6, 1> corners;
@@ -67,6 +72,32 @@ Eigen::VectorXd MapEnergy::coordinates(const Eigen::VectorXd& z) const {
   Eigen::VectorXd x = basis_.matrix() * z + basis_.offset();
   if (shift_.size() > 0) x += shift_;
   return x;
+}
+
+std::vector<int> MapEnergy::heldFlat() const {
+  // det is a polynomial in z: one that vanishes at points without structure vanishes everywhere. (Schwartz
+  // and Zippel) Two of them, since z also has the size of the constants.
+  constexpr double kVanished = 1e-9;  // relative to |J|^2
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<int> flat;
+  for (int round = 0; round < 2; ++round) {
+    Eigen::VectorXd z(basis_.freeCount());
+    const double size = 1 + (basis_.offset().size() > 0 ? basis_.offset().cwiseAbs().maxCoeff() : 0);
+    for (double& value : z) value = size * uniform(random);
+    const Eigen::VectorXd x = coordinates(z);
+    const auto vanishes = [&](int f) {
+      const Jacobian j = jacobian(f, x);
+      return std::abs(j.det()) <= kVanished * j.norm2();
+    };
+    if (round == 0) {
+      for (int f = 0; f < int(local_.size()); ++f)
+        if (vanishes(f)) flat.push_back(f);
+    } else {
+      std::erase_if(flat, [&](int f) { return !vanishes(f); });
+    }
+  }
+  return flat;
 }
 
 int MapEnergy::flipped(const Eigen::VectorXd& x) const {

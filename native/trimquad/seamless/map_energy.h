@@ -31,6 +31,9 @@ class MapEnergy {
   /// and they do not follow their target's directions.
   void setScaffold(int first, double weight);
 
+  /// Weighs triangles by `factor` (by face) beside their areas.
+  void stiffen(const std::vector<double>& factor);
+
   /// Adds to all coordinates from now on.
   void shift(const Eigen::VectorXd& x) { shift_ = x; }
 
@@ -48,6 +51,8 @@ class MapEnergy {
 
   Eigen::VectorXd coordinates(const Eigen::VectorXd& z) const;  ///< x = matrix z + offset + shift
 
+  /// Triangles that the constraints hold flat, whatever z is.
+  std::vector<int> heldFlat() const;
   int flipped(const Eigen::VectorXd& x) const;  ///< triangles with det <= 0
   double smallestDeterminant(const Eigen::VectorXd& x) const;
   /// Largest step along `direction` before a triangle collapses; infinite where none does.

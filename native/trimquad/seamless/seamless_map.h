@@ -20,6 +20,7 @@ struct MapCounters {
   int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
   int pathSteps = 0;           ///< steps from a nearby map's constraints to its own
   int untangleIterations = 0;  ///< Newton steps until none was
+  int stiffenings = 0;         ///< solves in which the target weighed more where the map went wrong before
   int start = 0;               ///< which start succeeded, from 0: the first one, or a later one
   bool convexStart =
       false;  ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding

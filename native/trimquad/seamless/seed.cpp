@@ -81,9 +81,11 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   for (const double reach : reaches) {
     const auto field = [&] { return crossField(region, guidance, reach, progress); };
     if (const auto error = tryField(region, options.edgeLength, field, Effort::Full, progress, result);
-        !error)
-      return result;
-    else if (!first)
+        !error) {
+      // Singularities that do not even make the map a better one are no use.
+      if (!without || result.map.counters.distortionEnd < without->map.counters.distortionEnd) return result;
+      break;
+    } else if (!first)
       first = error;
     ++result.fieldEdits;
   }

@@ -29,10 +29,10 @@ struct Seed {
   double fieldSeconds = 0, seamlessSeconds = 0;
 };
 
-/// A map without singularities where the region has one of little distortion; else the map of the smoothest
-/// field. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
-/// to one that follows nothing but the aligned edges. Throws Error(Stage) of the first field where none has a
-/// map.
+/// A map without singularities where the region has one of little distortion, or of less than with them; else
+/// the map of the smoothest field. Where a field has no locally injective map, smoother ones with fewer
+/// singularities are tried, down to one that follows nothing but the aligned edges. Throws Error(Stage) of
+/// the first field where none has a map.
 Seed seed(const Region& region, const SeedOptions& options, const Progress& progress);
 
 }  // namespace trimquad

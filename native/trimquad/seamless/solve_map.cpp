@@ -10,6 +10,7 @@
 #include "trimquad/seamless/convex_start.h"
 #include "trimquad/seamless/map_energy.h"
 #include "trimquad/seamless/newton.h"
+#include "trimquad/seamless/stiffening.h"
 #include "trimquad/seamless/winding.h"
 
 namespace trimquad {
@@ -105,9 +106,12 @@ void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& 
   SparseSolver solver("seamless");
   double least = energy.smallestDeterminant(energy.coordinates(z));
   if (least > 0) return;
-  int stalled = 0;
-  constexpr int kRounds = 40, kStepsPerRound = 8;
-  for (int round = 0; round < kRounds && stalled < 6; ++round) {
+  int fewest = energy.flipped(energy.coordinates(z));
+  double shallowest = least;
+  // Where it works, every few rounds halve the depth of the deepest fold, or turn triangles back. Energies go
+  // on falling for hundreds of steps where it does not.
+  constexpr int kRounds = 40, kStepsPerRound = 8, kPatience = 3;
+  for (int round = 0, idle = 0; round < kRounds && idle < kPatience; ++round) {
     const double depth = std::min(0.0, least), epsilon = std::sqrt(1e-12 + 0.04 * depth * depth);
     const auto density = [&](double I, double D) { return foldoverFree(I, D, epsilon); };
     const double roundStart = least;
@@ -115,12 +119,14 @@ void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& 
       progress.check();
       const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
       ++iterations;
-      const Eigen::VectorXd x = energy.coordinates(z);
-      least = energy.smallestDeterminant(x);
+      least = energy.smallestDeterminant(energy.coordinates(z));
       if (least > 0) return;
       if (least > roundStart / 2 || decrease < 1e-5) break;
     }
-    stalled = least > roundStart * (1 - 1e-3) ? 0 : stalled + 1;
+    const int flipped = energy.flipped(energy.coordinates(z));
+    idle = least > shallowest / 2 || flipped < fewest ? 0 : idle + 1;
+    fewest = std::min(fewest, flipped);
+    shallowest = std::max(shallowest, least);
   }
 }
 
@@ -150,7 +156,12 @@ Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const 
     return energy.flipped(energy.coordinates(z)) == 0 &&
            wrongCones(mesh, index, basis, energy.coordinates(z)).empty();
   };
+  if (const auto flat = energy.heldFlat(); !flat.empty())
+    throw stageError(stage, "the seams, aligned edges or integers around a triangle leave it no area",
+                     "triangle " + std::to_string(flat.front()),
+                     mesh.calc_face_centroid(FaceHandle(flat.front())));
   bool found = false;
+  std::vector<Eigen::VectorXd> reached;  // by start
   for (size_t k = 0; k < starts.size() && !found; ++k) {
     counters.start = int(k);
     z = poissonMap(mesh, starts[k], basis);
@@ -169,6 +180,15 @@ Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const 
     if (!found) {
       untangle(MapEnergy(mesh, starts[k], basis), basis, z, counters.untangleIterations, progress);
       found = injective();
+    }
+    reached.push_back(z);
+  }
+  for (size_t k = 0; k < reached.size() && !found; ++k) {
+    counters.start = int(k);
+    z = reached[k];
+    if (const auto stiffened = stiffenedMap(mesh, starts[k], index, basis, z, counters, progress)) {
+      z = *stiffened;
+      found = true;
     }
   }
   if (!found && effort == Effort::Full) {

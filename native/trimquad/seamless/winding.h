@@ -16,15 +16,4 @@ std::vector<VertexHandle> wrongCones(const SurfaceMesh& mesh, const std::vector<
 std::vector<VertexHandle> troubled(const SurfaceMesh& mesh, const std::vector<int>& index,
                                    const SeamBasis& basis, const MapEnergy& energy, const Eigen::VectorXd& x);
 
-/// Lays the fans of triangles around `centers` out anew, each evenly around its vertex's image: angles as on
-/// the surface, stretched to what the cone asks for, lengths and mean direction as in the target. The centers
-/// stay where they are.
-void spreadFans(const std::vector<VertexHandle>& centers, const SurfaceMesh& mesh, const SeamGraph& seams,
-                const MapTarget& target, const std::vector<int>& index, const SeamBasis& basis,
-                Eigen::VectorXd& z);
-
-/// Makes the map z harmonic within so many rings around `centers`, and leaves it as it is elsewhere.
-void relaxAround(const std::vector<VertexHandle>& centers, int rings, const SurfaceMesh& mesh,
-                 const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z);
-
 }  // namespace trimquad

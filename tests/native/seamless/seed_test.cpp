@@ -7,6 +7,9 @@
 
 #include "support/sample_regions.h"
 #include "trimquad/base/error.h"
+#include "trimquad/field/curvature_guidance.h"
+#include "trimquad/mesh/split_triangles.h"
+#include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
 namespace {
@@ -82,6 +85,161 @@ TEST(Seed, alignedEdgesLieOnGridLines) {
   const Seed s = seedOf(r, 0.2);
   check(r, s);
   EXPECT_EQ(s.map.aligned.size(), r.aligned.size());
+}
+
+/// A plane strip with a line of aligned edges through its middle that goes on both sides around the flat
+/// triangle (1, 2, 4), as sharp edges do at the slivers of a triangulation.
+Region lineAroundASliver() {
+  TriangleSoup soup;
+  for (const double x : {-2.0, -1.0, 1.0, 2.0}) soup.points.emplace_back(x, 0, 0);
+  soup.points.emplace_back(0, 0.05, 0);
+  for (const double y : {1.0, -1.0})
+    for (const double x : {-2.0, -1.0, 0.0, 1.0, 2.0}) soup.points.emplace_back(x, y, 0);
+  const auto above = [](int i) { return 5 + i; };
+  const auto below = [](int i) { return 10 + i; };
+  const int upper[] = {0, 1, 4, 2, 3};
+  for (int i = 0; i < 4; ++i) {
+    soup.triangles.push_back({upper[i], upper[i + 1], above(i + 1)});
+    soup.triangles.push_back({upper[i], above(i + 1), above(i)});
+  }
+  soup.triangles.push_back({1, 2, 4});
+  soup.triangles.push_back({below(0), below(1), 1});
+  soup.triangles.push_back({below(0), 1, 0});
+  soup.triangles.push_back({below(1), below(2), 1});
+  soup.triangles.push_back({below(2), 2, 1});
+  soup.triangles.push_back({below(2), below(3), 2});
+  soup.triangles.push_back({below(3), below(4), 3});
+  soup.triangles.push_back({below(3), 3, 2});
+  Region r = sample::region(soup);
+  for (const auto& [a, b] : {std::pair(0, 1), {1, 2}, {1, 4}, {4, 2}, {2, 3}})
+    r.aligned.push_back(r.mesh.edge_handle(r.mesh.find_halfedge(VertexHandle(a), VertexHandle(b))));
+  std::sort(r.aligned.begin(), r.aligned.end());
+  splitConstrainedTriangles(r);
+  return r;
+}
+
+TEST(Seed, ofTheEdgesAroundASliverTheLongOneIsFollowed) {
+  const Region r = lineAroundASliver();
+  const Seed s = seedOf(r, 0.5);
+  check(r, s);
+  ASSERT_EQ(s.map.aligned.size(), 3u);
+  for (const auto e : s.map.aligned)
+    EXPECT_EQ(r.mesh.calc_edge_vector(r.mesh.halfedge_handle(e, 0)).y(), 0) << "not along the line";
+}
+
+TEST(Seed, theTipOfASpikeKeepsACone) {
+  // A needle of four triangles has nearly all curvature of a half sphere in its tip: a cone without an angle.
+  TriangleSoup soup;
+  soup.points = {{0, 0, 1}, {0.01, 0, 0}, {0, 0.01, 0}, {-0.01, 0, 0}, {0, -0.01, 0}, {0, 0, -0.01}};
+  for (int k = 0; k < 4; ++k) {
+    const int a = 1 + k, b = 1 + (k + 1) % 4;
+    soup.triangles.push_back({0, a, b});
+    soup.triangles.push_back({5, b, a});
+  }
+  const Region r = sample::region(soup);
+  const Seed s = seedOf(r, 0.01);
+  check(r, s);
+  EXPECT_EQ(s.field.index[0], 3);
+}
+
+TEST(Seed, aTorusWithOneCone3AndOneCone5IsRefusedAtOnce) {
+  // No such map exists; the seams leave triangles no area, which needs no untangling to be seen.
+  const Region r = sample::region(sample::torus(10, 20));
+  CrossField field = crossField(r, curvatureGuidance(r, Progress()), 4, Progress());
+  ASSERT_EQ(std::count(field.index.begin(), field.index.end(), 0), int(r.mesh.n_vertices()));
+  const auto in = r.mesh.halfedge_handle(0), o = r.mesh.opposite_halfedge_handle(in);
+  ++field.matching[in.idx()];
+  --field.matching[o.idx()];
+  --field.index[r.mesh.to_vertex_handle(in).idx()];
+  ++field.index[r.mesh.from_vertex_handle(in).idx()];
+  try {
+    seamlessMap(r, field, 0.5, Effort::Full, Progress());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("no area"), std::string::npos) << error.what();
+  }
+}
+
+/// A small surface of genus 0, 1 or 2, rough, and its map.
+std::optional<std::pair<Region, SeamlessMap>> randomMap(unsigned number, std::mt19937& random) {
+  std::normal_distribution<double> noise(0, 0.01 * double(number % 5));
+  const int n = 2 + int(random() % 3);
+  TriangleSoup soup = number % 3 == 0   ? sample::sphere(n)
+                      : number % 3 == 1 ? sample::boxes(ring(1 + int(number % 2)), n)
+                                        : sample::sheet(n + 2, n + 3, sample::wavy);
+  for (auto& p : soup.points) p += Eigen::Vector3d(noise(random), noise(random), noise(random));
+  Region r = sample::region(soup);
+  try {
+    SeamlessMap map = seedOf(r, 0.1 + 0.1 * double(random() % 5)).map;
+    return std::pair(std::move(r), std::move(map));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+TEST(ExactMap, aMapThatIsValidInDoublesStaysValid) {
+  int maps = 0;
+  constexpr int kPerSurface = 20;
+  for (unsigned number = 0; number < sample::rounds(150); ++number) {
+    SCOPED_TRACE(number);
+    std::mt19937 random(number);
+    const auto sample = randomMap(number, random);
+    if (!sample) continue;
+    const auto& [r, map] = *sample;
+    const SeamBasis basis(r.mesh, map.seams, {});
+    const MapEnergy energy(r.mesh, map.target, basis);
+    Eigen::VectorXd x(basis.basis().variableCount());
+    for (const auto h : r.mesh.halfedges()) {
+      if (r.mesh.is_boundary(h)) continue;
+      const Eigen::Vector2d corner = map.scale.toQuads(map.from(h));
+      for (int axis = 0; axis < 2; ++axis) x[basis.coordinate(basis.wedge(h), axis)] = corner[axis];
+      const auto& crossing = map.seams.crossing[h.idx()];
+      if (!crossing || !crossing->forward) continue;
+      const Eigen::Vector2d translation = map.scale.toQuads(map.transition(h).translation);
+      for (int axis = 0; axis < 2; ++axis) x[basis.translation(crossing->branch, axis)] = translation[axis];
+    }
+    const Eigen::VectorXd start = basis.basis().restrict(x);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int k = 0; k < kPerSurface; ++k) {
+      Eigen::VectorXd direction(start.size());
+      for (double& d : direction) d = uniform(random);
+      const double furthest =
+          energy.stepToCollapse(energy.coordinates(start), basis.basis().matrix() * direction);
+      ASSERT_TRUE(std::isfinite(furthest));
+      // Ever closer to where a first triangle collapses.
+      const double part = 1 - std::pow(10.0, -double(k % 6));
+      const Eigen::VectorXd z = start + part * furthest * direction;
+      if (energy.flipped(energy.coordinates(z)) > 0) continue;
+      EXPECT_NO_THROW(exactMap(r.mesh, basis, z, false)) << "up to " << part << " of the way";
+      ++maps;
+    }
+  }
+  EXPECT_GT(maps, int(sample::rounds(150)) * kPerSurface * 3 / 4);
+}
+
+TEST(Seed, countsDoNotChangeWithPlaceScaleOrNumbering) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 0.08);
+  auto rough = sample::torus(16, 24);
+  for (auto& p : rough.points) p += Eigen::Vector3d(noise(random), noise(random), noise(random));
+  for (const auto& soup :
+       {sample::boxes(ring(2), 4), rough, sample::boxes({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 5)}) {
+    const Seed expected = seedOf(sample::region(soup), 0.3);
+    const auto counts = [](const Seed& s) {
+      auto index = s.field.index;
+      std::sort(index.begin(), index.end());
+      return std::pair(index, s.map.counters.flippedBefore);
+    };
+    for (const double scale : {1e-3, 1.0, 1e3}) {
+      auto other = soup;
+      const Eigen::Matrix3d rotation =
+          Eigen::AngleAxisd(0.7 + scale, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+      for (auto& p : other.points) p = scale * (rotation * p + Eigen::Vector3d(5, 6, 7));
+      std::shuffle(other.triangles.begin(), other.triangles.end(), random);
+      for (auto& t : other.triangles) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
+      EXPECT_EQ(counts(seedOf(sample::region(other), 0.3 * scale)), counts(expected)) << "scale " << scale;
+    }
+  }
 }
 
 TEST(Seed, smoothFieldsIgnoreCurvature) {

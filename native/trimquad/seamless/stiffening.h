@@ -1,0 +1,19 @@
+#pragma once
+
+#include "trimquad/base/progress.h"
+#include "trimquad/seamless/map_energy.h"
+
+namespace trimquad {
+
+/// Least squares alone may turn triangles over, or let a fan wind around a neighbour of its cone, where the
+/// target bends too much to be followed everywhere. Here the target weighs more, from solve to solve, around
+/// the vertices at which it goes wrong, until the map is locally injective, untangled or as it is. (Local
+/// stiffening: Bommes, Zimmer, Kobbelt 2009) Gives up, with nothing, once fewer and fewer of them is not what
+/// comes of it.
+/// \param z  where to begin: a map that is not locally injective
+std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapTarget& target,
+                                            const std::vector<int>& index, const SeamBasis& basis,
+                                            Eigen::VectorXd z, MapCounters& counters,
+                                            const Progress& progress);
+
+}  // namespace trimquad
