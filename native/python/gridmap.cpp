@@ -24,9 +24,9 @@ void bindGridMap(py::module_& m) {
       [](Model& model, int index, const SeamlessMap& seamless, const TMesh& tmesh,
          const Quantization& quantization, const Progress& progress) {
         const auto started = std::chrono::steady_clock::now();
-        const PatchMap patches =
-            constructiveMap(seamless, embed(seamless, tmesh, quantization, progress), progress);
+        EmbeddedTMesh embedded = embed(seamless, tmesh, quantization, progress);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - started;
+        const PatchMap patches = constructiveMap(seamless, std::move(embedded), progress);
         GridMap map = optimizedPatchMap(seamless, patches, progress);
         Region& region = model.regions.at(std::size_t(index));
         region = refinedRegion(region, model.curves, patches.embedded.surface);
@@ -40,7 +40,7 @@ void bindGridMap(py::module_& m) {
       },
       py::arg("model"), py::arg("index"), py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
       py::arg("progress"), Released(),
-      "The constructive route: the grid map, seconds until its optimisation, counters. The region of the model "
+      "The constructive route: the grid map, seconds of re-embedding, counters. The region of the model "
       "gets the refined mesh that the map is of.");
   m.def("grid_map", &gridMap, py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
         py::arg("progress"), Released());

@@ -51,7 +51,7 @@ VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, EdgeH
 /// Puts a vertex in the middle of a triangle.
 VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, FaceHandle f);
 
-/// Takes deleted elements out of the mesh. Returns the new handle by old vertex index, invalid where deleted.
+/// Takes deleted elements out of the mesh; the last ones take their numbers. Returns the new handle by old vertex index, invalid where deleted.
 std::vector<VertexHandle> compact(RefinedMesh& refined);
 
 /// Moves the vertices that the input has not, each within what it lies in, where that makes its smallest
