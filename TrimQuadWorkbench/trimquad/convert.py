@@ -262,6 +262,18 @@ def _grid_map(item, index, result, run):
     item.seconds["reembed"] = seconds
 
 
+def _polygonal(quads, item, options):
+    """The quads; None, and an error in the region, where they were asked for and their polygons are no manifold."""
+    place = quads.doubled_side
+    if place is None or "quads" not in options.write:
+        return quads
+    item.error = Error(
+        "stage", "extract", "two quads would share more than one side, the surface is less than three quads around there; "
+        "use a shorter edge length", item.name, place,
+    )
+    return None
+
+
 def _map_region(item, index, result, progress):
     """The stages of one region in their order; the first Error ends it and is kept in the region."""
     native = load()
@@ -282,7 +294,7 @@ def _map_region(item, index, result, progress):
         item.tmesh = run("partition", native.partition, item.seamless)
         item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
         _grid_map(item, index, result, run)
-        item.quads = run("extract", native.extract_quads, item.grid, item.mapped_region)
+        item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
             item.fitted = run(
                 "fit", native.fit_surface, item.mapped_region, item.grid, result.fit_tolerance, options.degree

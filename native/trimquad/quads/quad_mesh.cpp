@@ -6,6 +6,17 @@
 
 namespace trimquad {
 
+std::optional<std::array<QuadPointId, 2>> doubledSide(const QuadMesh& quads) {
+  std::vector<std::array<QuadPointId, 2>> sides;
+  for (const auto& cell : quads.cells)
+    for (const auto& polygon : cell.simple.empty() ? cell.loops : cell.simple)
+      for (size_t k = 0; k < polygon.size(); ++k)
+        sides.push_back({polygon[k], polygon[(k + 1) % polygon.size()]});
+  std::sort(sides.begin(), sides.end());
+  const auto twice = std::adjacent_find(sides.begin(), sides.end());
+  return twice == sides.end() ? std::nullopt : std::optional(*twice);
+}
+
 QuadStatistics statistics(const QuadMesh& quads) {
   QuadStatistics result;
   std::vector<double> deviations;

@@ -10,8 +10,8 @@ namespace {
 
 /// Branches times arcs: milliseconds; finds most optima of T-meshes that are not large.
 constexpr long long kWorkInPassing = 20000;
-/// Up to a minute or so, and some hundred megabytes.
-constexpr long long kWorkForProof = 2000000;
+/// Some seconds, and some hundred megabytes.
+constexpr long long kWorkForProof = 8000000;
 
 }  // namespace
 
