@@ -253,13 +253,10 @@ def _grid_map(item, index, result, run):
                 raise
     # The model's region gets the refined mesh; field and seamless map are of the one before.
     item.region = native.copy_region(item.region)
-    item.grid, seconds, counters = run(
-        "reembed", native.reembed, result.model, index, item.seamless, item.tmesh, item.quantization
-    )
+    embedded = run("reembed", native.embed, item.seamless, item.tmesh, item.quantization)
+    item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.seamless, embedded)
     item.mapped_region = result.model.regions[index]
     item.embedding = {"route": "reembedded", **counters}
-    item.seconds["optimize"] = item.seconds["reembed"] - seconds
-    item.seconds["reembed"] = seconds
 
 
 def _polygonal(quads, item, options):

@@ -38,6 +38,14 @@ void bindQuads(py::module_& m) {
   py::class_<QuadMesh>(m, "QuadMesh")
       .def_property_readonly("statistics", &statisticsOf, "the object `quads` of report.json")
       .def_property_readonly(
+          "measures",
+          [](const QuadMesh& quads) {
+            const QuadMeasures found = measures(quads);
+            return std::make_tuple(found.angleDeviations, found.edgeLengths);
+          },
+          "(degrees from 90 of the corners of full quads at inner points, lengths of the edges of full "
+          "quads)")
+      .def_property_readonly(
           "doubled_side",
           [](const QuadMesh& quads) -> py::object {
             const auto side = doubledSide(quads);

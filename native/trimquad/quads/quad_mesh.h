@@ -63,6 +63,14 @@ struct QuadMesh {
 /// there, and the polygons, which only know their points, are no manifold.
 std::optional<std::array<QuadPointId, 2>> doubledSide(const QuadMesh& quads);
 
+/// What the histograms of the paper's Fig. 11 count.
+struct QuadMeasures {
+  std::vector<double> angleDeviations;  ///< degrees, of the corners of full quads at inner points from 90
+  std::vector<double> edgeLengths;      ///< model units, each edge of a full quad once
+};
+
+QuadMeasures measures(const QuadMesh& quads);
+
 /// What report.json says about a quad mesh.
 struct QuadStatistics {
   int quads = 0, trimmed = 0;
