@@ -9,7 +9,8 @@ import math
 import os
 
 import numpy
-from stages import Error, Mapped, mesh_size, write_page
+from stages import DOCS, Error, Mapped, mesh_size, write_page
+from trimquad.histograms import histograms, sum_of, write_histograms
 
 QUADS = 1000
 # Numbers of quads differ by less than this part.
@@ -24,7 +25,7 @@ MODELS = [
     "mesh/demosthenes-low-res.obj", "mesh/flatmesh.off", "mesh/hand_lowres.obj", "mesh/inspired_mesh.obj",
     "mesh/lilium.obj", "mesh/mask3kf.obj", "mesh/nacaFlow_unstructured_medium.obj", "mesh/object.stl",
     "mesh/plane_holes.obj", "mesh/punctured-torus.obj", "mesh/reparam_input.obj", "mesh/spothead.obj",
-    "mesh/terrain_stl_data.stl", "mesh/vase.off", "mesh/3. Open mesh.stl",
+    "mesh/terrain_stl_data.stl", "mesh/vase.off",
 ]
 HEADER = """# Free and aligned boundaries
 
@@ -33,6 +34,8 @@ sharp edges not followed, at the same number of quads (about {quads}, trimmed on
 vertices of other than four quads. Angle: mean deviation from 90 degrees of the corners of whole quads. Length: standard
 deviation of the edge lengths of whole quads, as a part of their mean. The claim of Lyon, Campen, Bommes and Kobbelt 2019,
 section 7, is that free boundaries are better in angles and lengths, and in some cases no worse.
+
+![](free-and-aligned.png)
 
 | model | quads | irregular, free | aligned | angle, free | aligned | length, free | aligned |
 |---|---|---|---|---|---|---|---|"""
@@ -48,7 +51,9 @@ class Quads:
         uv = grid.arrays[2]
         sides = uv[:, 1:] - uv[:, :1]
         self.quads = 0.5 * float(numpy.sum(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]))
-        statistics = mapped.quads(grid, region).statistics
+        quads = mapped.quads(grid, region)
+        self.histograms = histograms(quads, edge_length)
+        statistics = quads.statistics
         self.irregular = statistics["irregular_vertices"]
         self.angle = statistics["angle_deviation"]["mean"]
         edge = statistics["edge_length"]
@@ -78,21 +83,28 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data")
     options = parser.parse_args()
-    lines, better, count = [HEADER.format(quads=QUADS)], 0, 0
+    lines, pairs = [HEADER.format(quads=QUADS)], []
     for name in MODELS:
         try:
             free, aligned = pair(os.path.join(options.data, name))
         except Error as error:
             lines.append(f"| {name} | {error} | | | | | | |")
             continue
-        count += 1
-        better += free.is_no_worse_than(aligned)
+        pairs.append((free, aligned))
         mark = "" if free.is_no_worse_than(aligned) else " (*)"
         lines.append(f"| {name}{mark} | {free.quads:.0f}, {aligned.quads:.0f} | {free.irregular} | {aligned.irregular} | "
                      f"{free.angle:.2f} | {aligned.angle:.2f} | {free.length:.3f} | {aligned.length:.3f} |")
         print(lines[-1], flush=True)
-    lines += ["", f"Free boundaries are no worse in irregular vertices and in angles on {better} of {count} models "
-              f"({100 * better / max(1, count):.0f} %); the others are marked (*)."]
+    count = max(1, len(pairs))
+    fewer = sum(free.irregular <= aligned.irregular for free, aligned in pairs)
+    evener = sum(free.length <= aligned.length for free, aligned in pairs)
+    straighter = sum(free.angle <= aligned.angle + 0.01 for free, aligned in pairs)
+    better = sum(free.is_no_worse_than(aligned) for free, aligned in pairs)
+    lines += ["", f"Of {count} models, free boundaries are no worse in irregular vertices on {100 * fewer / count:.0f} %, in edge "
+              f"lengths on {100 * evener / count:.0f} %, in angles on {100 * straighter / count:.0f} %, in irregular vertices and "
+              f"angles both on {100 * better / count:.0f} %; the others are marked (*)."]
+    named = [(name, sum_of([p[k].histograms for p in pairs])) for k, name in enumerate(("free", "aligned"))]
+    write_histograms(named, os.path.join(DOCS, "free-and-aligned.png"))
     write_page("free-and-aligned.md", lines)
 
 

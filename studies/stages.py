@@ -4,6 +4,7 @@ import sys
 import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+DOCS = os.path.join(ROOT, "docs")
 sys.path.insert(0, os.path.join(ROOT, "TrimQuadWorkbench"))
 
 from trimquad import Error  # noqa: E402
@@ -96,7 +97,7 @@ def timed(function, *arguments, prepare=None):
 
 def write_page(name, lines):
     """Replace docs/NAME whole."""
-    path = os.path.join(ROOT, "docs", name)
+    path = os.path.join(DOCS, name)
     with open(path + ".new", "w", encoding="utf-8") as page:
         page.write("\n".join(lines) + "\n")
     os.replace(path + ".new", path)
