@@ -12,6 +12,7 @@ using Origin = RefinedMesh::Origin;
 using Eigen::Vector3d;
 
 constexpr int kSweeps = 8;        ///< of `relax`
+constexpr double kGood = 0.05;    ///< parts of an input triangle that need not be made larger
 constexpr double kBetter = 1.01;  ///< a move must make the smallest triangle larger by this factor
 
 VertexHandle endOf(const SurfaceMesh& mesh, EdgeHandle e, int k) {
@@ -206,8 +207,10 @@ void relax(const SurfaceMesh& input, RefinedMesh& refined) {
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = input.n_vertices(); i < refined.mesh.n_vertices(); ++i) {
       const VertexHandle v{int(i)};
-      const Origin before = refined.vertexOrigin[i], goal = amongNeighbours(input, refined, v);
+      const Origin before = refined.vertexOrigin[i];
       const double least = smallestTriangle(input, refined, v, before);
+      if (least > kGood) continue;
+      const Origin goal = amongNeighbours(input, refined, v);
       for (const double step : {1.0, 0.5, 0.2}) {
         Origin place = before;
         place.weights = (1 - step) * before.weights + step * goal.weights;
