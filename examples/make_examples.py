@@ -127,6 +127,23 @@ def _at_mouth(point):
     return abs(abs(point.x) - 100) < 1e-3 or abs(point.z - 95) < 1e-3
 
 
+def wing():
+    """The plane around a wing profile (NACA 0012, six degrees against the stream), out to a circle."""
+    def point(x, side):
+        y = side * 0.6 * (0.2969 * math.sqrt(x) - 0.1260 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+        turn = math.radians(-6)
+        return V(100 * (x * math.cos(turn) - y * math.sin(turn)), 100 * (x * math.sin(turn) + y * math.cos(turn)), 0)
+
+    places = [0.5 * (1 - math.cos(math.pi * k / 40)) for k in range(41)]
+    above, below = Part.BSplineCurve(), Part.BSplineCurve()
+    above.interpolate([point(x, 1) for x in places])
+    below.interpolate([point(x, -1) for x in reversed(places)])
+    circle = Part.Wire(Part.Circle(V(50, 0, 0), V(0, 0, 1), 220).toShape())
+    face = Part.Face([circle, Part.Wire([above.toShape(), below.toShape()])])
+    face.validate()
+    return face
+
+
 def write_step(shape, path):
     """STEP with a constant date in its header, so that the same shape gives the same bytes."""
     shape.exportStep(path)
@@ -139,9 +156,10 @@ def write_step(shape, path):
 
 def main():
     folder = sys.argv[-1] if os.path.isdir(sys.argv[-1]) else os.path.dirname(os.path.abspath(__file__))
-    os.makedirs(os.path.join(folder, "closed"), exist_ok=True)
+    for name in ("closed", "flow"):
+        os.makedirs(os.path.join(folder, name), exist_ok=True)
     for make, name in ((hood, "hood"), (tube, "tube"), (sheet, "sheet"), (box_with_fillets, "box_with_fillets"),
-                       (tee, "closed/tee")):
+                       (tee, "closed/tee"), (wing, "flow/wing")):
         shape = make()
         assert shape.isValid(), name
         write_step(shape, os.path.join(folder, name + ".step"))

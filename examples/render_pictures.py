@@ -16,9 +16,16 @@ import trimquad
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Of the closed surface the stages before the B-splines are shown.
 OPEN, CLOSED = ("map", "quads", "nurbs"), ("tmesh", "tmesh_unfolded", "quads")
-# name: (number of quads, pictures)
-EXAMPLES = {"hood": (500, OPEN), "tube": (550, OPEN), "sheet": (450, OPEN), "box_with_fillets": (600, OPEN),
-            "closed/tee": (1500, CLOSED)}
+# pictures' name: (file, options, pictures)
+EXAMPLES = {
+    "hood": ("hood", {"quads": 500}, OPEN),
+    "tube": ("tube", {"quads": 550}, OPEN),
+    "sheet": ("sheet", {"quads": 450}, OPEN),
+    "box_with_fillets": ("box_with_fillets", {"quads": 600}, OPEN),
+    "tee": ("closed/tee", {"quads": 1500}, CLOSED),
+    "wing": ("flow/wing", {"quads": 1500, "align": ["Edge2", "Edge3"]}, ("quads",)),
+    "wing-aligned": ("flow/wing", {"quads": 1500, "boundary": "aligned"}, ("quads",)),
+}
 MARGIN = 12  # pixels of white that stay around the drawing
 COLOURS = 96
 WIDTH = 640  # pixels, at most
@@ -38,16 +45,17 @@ def trimmed(picture):
 def main():
     docs = os.path.join(ROOT, "docs")
     os.makedirs(docs, exist_ok=True)
-    for name, (quads, kinds) in EXAMPLES.items():
-        options = trimquad.Options(quads=quads, write=["pictures"])
-        result = trimquad.convert(os.path.join(ROOT, "examples", name + ".step"), options)
+    for name, (file, settings, kinds) in EXAMPLES.items():
+        result = trimquad.convert(
+            os.path.join(ROOT, "examples", file + ".step"), trimquad.Options(write=["pictures"], **settings)
+        )
         if any(item.error for item in result.regions if item.quads is None or "nurbs" in kinds):
             raise result.failed[0].error
         with tempfile.TemporaryDirectory() as folder:
             result.write(folder)
             for kind in kinds:
                 picture = Image.open(os.path.join(folder, kind + ".png")).convert("RGB")
-                path = os.path.join(docs, f"{os.path.basename(name)}-{kind}.png")
+                path = os.path.join(docs, f"{name}-{kind}.png")
                 trimmed(picture).save(path, optimize=True)
                 assert os.path.getsize(path) < LARGEST, path
         print(f"{name}: {[r.quads.statistics['quads'] for r in result.regions]} quads")

@@ -255,13 +255,22 @@ def _grid_map(item, index, result, run):
                 raise
     # The model's region gets the refined mesh; field and seamless map are of the one before.
     item.region = native.copy_region(item.region)
-    item.grid, seconds, counters = run(
-        "reembed", native.reembed, result.model, index, item.seamless, item.tmesh, item.quantization
-    )
+    embedded = run("reembed", native.embed, item.seamless, item.tmesh, item.quantization)
+    item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.seamless, embedded)
     item.mapped_region = result.model.regions[index]
     item.embedding = {"route": "reembedded", **counters}
-    item.seconds["optimize"] = item.seconds["reembed"] - seconds
-    item.seconds["reembed"] = seconds
+
+
+def _polygonal(quads, item, options):
+    """The quads; None, and an error in the region, where they were asked for and their polygons are no manifold."""
+    place = quads.doubled_side
+    if place is None or "quads" not in options.write:
+        return quads
+    item.error = Error(
+        "stage", "extract", "two quads would share more than one side, the surface is less than three quads around there; "
+        "use a shorter edge length", item.name, place,
+    )
+    return None
 
 
 def _fit(item, tolerance, result, progress):
@@ -291,7 +300,7 @@ def _map_region(item, index, result, progress):
         item.tmesh = run("partition", native.partition, item.seamless)
         item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
         _grid_map(item, index, result, run)
-        item.quads = run("extract", native.extract_quads, item.grid, item.mapped_region)
+        item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
         if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
             item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
     except Error as error:

@@ -3,7 +3,7 @@ from .error import input_error
 
 
 def write_document(result, path):
-    """Save the B-spline faces, the quads and the map of a Result as .FCStd. Needs FreeCAD's modules; raises Error(input)."""
+    """Save the B-spline faces, the quads (also as a mesh for finite elements) and the map of a Result as .FCStd. Needs FreeCAD's modules; raises Error(input)."""
     try:
         import FreeCAD
         import Mesh  # noqa: F401
@@ -23,6 +23,7 @@ def write_document(result, path):
             QuadMesh(quads)
             fill(quads, parts)
             quads.purgeTouched()
+            _add_fem_mesh(document, parts)
         if any(r.map is not None for r in result.regions):
             grid = document.addObject("App::FeaturePython", "GridMap")
             grid_map.GridMap(grid)
@@ -31,3 +32,14 @@ def write_document(result, path):
         document.saveAs(path)
     finally:
         FreeCAD.closeDocument(document.Name)
+
+
+def _add_fem_mesh(document, parts):
+    """Where FreeCAD has its Fem module."""
+    try:
+        import Fem  # noqa: F401
+    except ImportError:
+        return
+    from .fem_mesh import fem_mesh
+
+    document.addObject("Fem::FemMeshObject", "FemMesh").FemMesh = fem_mesh(parts)

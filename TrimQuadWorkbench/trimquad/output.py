@@ -12,7 +12,7 @@ from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
     r"(seamless|gridmap|quads|texture)(-\d+)?\.obj|tmesh(-\d+)?\.json|texture\.(mtl|png)|nurbs\.(step|brep)"
-    r"|report\.json|trimquad\.FCStd|(map|quads|nurbs|tmesh|tmesh_unfolded)\.png"
+    r"|report\.json|trimquad\.FCStd|(map|quads|histograms|nurbs|tmesh|tmesh_unfolded)\.png"
 )
 
 

@@ -4,6 +4,7 @@ import numpy
 from .colours import point_colour
 from .error import input_error
 from .freecad_shape import shape_from_bytes
+from .histograms import histograms, sum_of, write_histograms
 from .native import load
 from .polygons import Polygons
 from .tmesh_layout import arc_courses, arc_lines, critical_points, layout_of_patches
@@ -22,7 +23,7 @@ LIGHT = numpy.array([0.35, -0.45, 0.82])
 
 
 def write_pictures(result, path_of, progress):
-    """Write map.png, tmesh.png, tmesh_unfolded.png, quads.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
+    """Write map.png, tmesh.png, tmesh_unfolded.png, quads.png, histograms.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
     try:
         import matplotlib
 
@@ -42,6 +43,8 @@ def write_pictures(result, path_of, progress):
     polygons = [r.polygons for r in result.regions if r.quads is not None]
     if polygons:
         _save(path_of("quads.png"), [_quads(p) for p in polygons], [_lines(p) for p in polygons])
+        counts = [histograms(r.quads, result.options.edge_length) for r in result.regions if r.quads is not None]
+        write_histograms([("", sum_of(counts))], path_of("histograms.png"))
     progress.check()
     if result.native_shape is not None:
         faces, lines = _faces(result)

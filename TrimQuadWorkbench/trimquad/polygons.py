@@ -34,6 +34,16 @@ class Polygons:
                 pairs.add((min(a, b), max(a, b)))
         return sorted(pairs)
 
+    def elements(self):
+        """Triangles and convex quads that cover the polygons with their edges, as point numbers: for finite elements."""
+        result = list(map(tuple, self.full))
+        for polygon in self.trimmed:
+            if len(polygon) == 4 and _is_convex(self.points[polygon]):
+                result.append(tuple(polygon))
+            else:
+                result += _clip_ears(self.points, polygon)
+        return result
+
     def triangles(self):
         """Triangles that cover the polygons, as point numbers."""
         result = []
@@ -42,6 +52,13 @@ class Polygons:
         for polygon in self.trimmed:
             result += _clip_ears(self.points, polygon)
         return result
+
+
+def _is_convex(corners):
+    sides = numpy.roll(corners, -1, axis=0) - corners
+    turns = numpy.cross(numpy.roll(sides, 1, axis=0), sides)
+    least = 1e-3 * (numpy.linalg.norm(sides, axis=1) * numpy.linalg.norm(numpy.roll(sides, 1, axis=0), axis=1))
+    return bool((turns @ turns.sum(axis=0) > least * numpy.linalg.norm(turns.sum(axis=0))).all())
 
 
 def _clip_ears(points, polygon):

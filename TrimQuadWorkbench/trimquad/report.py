@@ -1,6 +1,7 @@
 """report.json: one object about a conversion, built from the values of the stages."""
 import os
 
+from .histograms import histograms
 from .native import load
 from .tmesh import tmesh_counts
 
@@ -59,6 +60,7 @@ def _region_report(result, index, item, seconds):
         "embedding": item.embedding,
         "gridmap": item.grid and {"flipped": 0, **item.grid.counters},
         "quads": item.quads and item.quads.statistics,
+        "histograms": item.quads and histograms(item.quads, result.options.edge_length),
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
         "seconds": seconds,
     }

@@ -1,7 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <chrono>
-
 #include "bindings.h"
 #include "trimquad/embed/embed.h"
 #include "trimquad/gridmap/grid_map.h"
@@ -19,29 +17,33 @@ void bindGridMap(py::module_& m) {
       .def_property_readonly("arrays", [](const GridMap& map) { return arraysOf(map); })
       .def(
           "to_obj", [](const GridMap& map) { return writeObj(map); }, Released());
+  py::class_<EmbeddedTMesh>(m, "EmbeddedTMesh");
   m.def(
-      "reembed",
-      [](Model& model, int index, const SeamlessMap& seamless, const TMesh& tmesh,
-         const Quantization& quantization, const Progress& progress) {
-        const auto started = std::chrono::steady_clock::now();
-        const PatchMap patches =
-            constructiveMap(seamless, embed(seamless, tmesh, quantization, progress), progress);
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - started;
+      "embed",
+      [](const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
+         const Progress& progress) { return embed(seamless, tmesh, quantization, progress); },
+      py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"), py::arg("progress"), Released(),
+      "The T-mesh on edges of a refined mesh, its zero arcs collapsed: the constructive route.");
+  m.def(
+      "embedded_grid_map",
+      [](Model& model, int index, const SeamlessMap& seamless, const EmbeddedTMesh& embedded,
+         const Progress& progress) {
+        const PatchMap patches = constructiveMap(seamless, embedded, progress);
         GridMap map = optimizedPatchMap(seamless, patches, progress);
         Region& region = model.regions.at(std::size_t(index));
         region = refinedRegion(region, model.curves, patches.embedded.surface);
         const auto& counters = patches.embedded.counters;
-        return std::make_tuple(std::move(map), seconds.count(),
-                               std::map<std::string, int>{{"inserted_vertices", counters.inserted},
-                                                          {"collapses", counters.zeroArcCollapses +
-                                                                            counters.patchCollapses +
-                                                                            counters.patchSplits},
-                                                          {"splits", counters.splits + patches.splits}});
+        return std::make_tuple(
+            std::move(map),
+            std::map<std::string, int>{
+                {"inserted_vertices", counters.inserted},
+                {"collapses", counters.zeroArcCollapses + counters.patchCollapses + counters.patchSplits},
+                {"splits", counters.splits + patches.splits}});
       },
-      py::arg("model"), py::arg("index"), py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
-      py::arg("progress"), Released(),
-      "The constructive route: the grid map, seconds until its optimisation, counters. The region of the model "
-      "gets the refined mesh that the map is of.");
+      py::arg("model"), py::arg("index"), py::arg("seamless"), py::arg("embedded"), py::arg("progress"),
+      Released(),
+      "The optimised grid map of an embedded T-mesh, and counters. The region of the model gets the refined "
+      "mesh that the map is of.");
   m.def("grid_map", &gridMap, py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"),
         py::arg("progress"), Released());
 }

@@ -37,6 +37,23 @@ py::dict statisticsOf(const QuadMesh& quads) {
 void bindQuads(py::module_& m) {
   py::class_<QuadMesh>(m, "QuadMesh")
       .def_property_readonly("statistics", &statisticsOf, "the object `quads` of report.json")
+      .def_property_readonly(
+          "measures",
+          [](const QuadMesh& quads) {
+            const QuadMeasures found = measures(quads);
+            return std::make_tuple(found.angleDeviations, found.edgeLengths);
+          },
+          "(degrees from 90 of the corners of full quads at inner points, lengths of the edges of full "
+          "quads)")
+      .def_property_readonly(
+          "doubled_side",
+          [](const QuadMesh& quads) -> py::object {
+            const auto side = doubledSide(quads);
+            if (!side) return py::none();
+            const auto& p = quads.points[std::size_t((*side)[0].index)].position;
+            return py::make_tuple(p.x(), p.y(), p.z());
+          },
+          "where two sides join the same two points, or None")
       .def_readonly("euler", &QuadMesh::eulerCharacteristic)
       .def("to_obj", &writeQuadsObj, Released());
   m.def(

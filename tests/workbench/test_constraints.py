@@ -1,12 +1,14 @@
 """Aligned edges, feature points and fields from files: from the options to the regions that the stages work on."""
 import json
 import math
+import os
 import sys
 
 import numpy
 import pytest
 
 import trimquad
+from conftest import ROOT
 from trimquad.native import load
 
 QUADS_ONLY = ["gridmap", "quads", "report"]
@@ -192,3 +194,14 @@ def test_a_field_that_is_not_there_and_one_for_a_cad_shape_are_refused(box, tmp_
     path = field_file(tmp_path, "by_face.txt", [(1, 0, 0)] * 6)
     with pytest.raises(trimquad.Error, match="give a point before each direction"):
         trimquad.convert(box, trimquad.Options(field=path))
+
+
+def test_around_a_wing_quads_that_follow_the_wing_alone_are_more_regular():
+    path = os.path.join(ROOT, "examples", "flow", "wing.step")
+    statistics = {}
+    for name, options in (("wing", {"align": ["Edge2", "Edge3"]}), ("all", {"boundary": "aligned"})):
+        result = trimquad.convert(path, trimquad.Options(quads=800, write=QUADS_ONLY, **options))
+        assert not result.failed
+        statistics[name] = result.regions[0].quads.statistics
+    assert statistics["wing"]["irregular_vertices"] < statistics["all"]["irregular_vertices"]
+    assert statistics["wing"]["angle_deviation"]["mean"] < 0.5 * statistics["all"]["angle_deviation"]["mean"]

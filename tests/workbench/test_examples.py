@@ -167,6 +167,7 @@ def test_the_report_has_its_keys(converted, name):
         assert {"flipped_before", "flipped", "iterations"} <= set(region["seamless"])
         assert {"flipped", "distortion_start", "distortion_end", "iterations"} <= set(region["gridmap"])
         assert {"quads", "trimmed", "irregular_vertices", "angle_deviation", "edge_length"} == set(region["quads"])
+        assert sum(region["histograms"]["edge_length"]["counts"]) > 0
         assert {"faces", "control_points", "degree", "max_deviation", "rms_deviation", "max_gap", "tolerance"} == set(
             region["nurbs"]
         )

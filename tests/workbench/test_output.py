@@ -132,13 +132,14 @@ def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
     import FreeCAD
 
     result = trimquad.convert(sheet, trimquad.Options(quads=50, write=["pictures", "fcstd"]))
-    pictures = ["map.png", "nurbs.png", "quads.png", "tmesh.png", "tmesh_unfolded.png"]
+    pictures = ["histograms.png", "map.png", "nurbs.png", "quads.png", "tmesh.png", "tmesh_unfolded.png"]
     assert result.write(str(tmp_path)) == [*pictures, "trimquad.FCStd"]
     document = FreeCAD.openDocument(str(tmp_path / "trimquad.FCStd"))
     try:
         kinds = sorted(o.TypeId for o in document.Objects)
-        assert kinds == ["App::FeaturePython", "Mesh::FeaturePython", "Part::Feature"]
+        assert kinds == ["App::FeaturePython", "Fem::FemMeshObject", "Mesh::FeaturePython", "Part::Feature"]
         assert document.QuadMesh.Mesh.CountFacets > 50
+        assert document.FemMesh.FemMesh.QuadrangleCount >= document.QuadMesh.FullQuads
     finally:
         FreeCAD.closeDocument(document.Name)
 

@@ -125,6 +125,15 @@ class Insertion {
   }
 
   void cut(FaceHandle f) {
+    const auto crossed = [&](HalfedgeHandle h) { return !onEdge_[input_.edge_handle(h).idx()].empty(); };
+    const auto sides = input_.fh_range(f);
+    if (segments_[f.idx()].empty() && std::none_of(sides.begin(), sides.end(), crossed)) {
+      auto& corner = soup_.triangles.emplace_back();
+      int k = 0;
+      for (const auto h : sides) corner[k++] = input_.from_vertex_handle(h).idx();
+      result_.surface.faceOrigin.push_back(f.idx());
+      return;
+    }
     for (const Cell& cell : cellsOf(f)) triangulate(cell, f);
   }
 

@@ -12,6 +12,7 @@ using Origin = RefinedMesh::Origin;
 using Eigen::Vector3d;
 
 constexpr int kSweeps = 8;        ///< of `relax`
+constexpr double kGood = 0.05;    ///< parts of an input triangle that need not be made larger
 constexpr double kBetter = 1.01;  ///< a move must make the smallest triangle larger by this factor
 
 VertexHandle endOf(const SurfaceMesh& mesh, EdgeHandle e, int k) {
@@ -180,33 +181,36 @@ VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, FaceH
 }
 
 std::vector<VertexHandle> compact(RefinedMesh& refined) {
-  std::vector<VertexHandle> renamed(refined.mesh.n_vertices());
-  TriangleSoup soup;
-  RefinedMesh result;
-  for (const auto v : refined.mesh.vertices()) {
-    if (refined.mesh.status(v).deleted()) continue;
-    renamed[v.idx()] = VertexHandle(int(soup.points.size()));
-    soup.points.push_back(refined.mesh.point(v));
-    result.vertexOrigin.push_back(refined.vertexOrigin[v.idx()]);
-  }
-  for (const auto f : refined.mesh.faces()) {
-    if (refined.mesh.status(f).deleted()) continue;
-    int k = 0;
-    auto& triangle = soup.triangles.emplace_back();
-    for (const auto v : refined.mesh.fv_range(f)) triangle[k++] = renamed[v.idx()].idx();
-    result.faceOrigin.push_back(refined.faceOrigin[f.idx()]);
-  }
-  result.mesh = buildSurfaceMesh(soup);
-  refined = std::move(result);
-  return renamed;
+  SurfaceMesh& mesh = refined.mesh;
+  std::vector<VertexHandle> vertex(mesh.n_vertices());
+  std::vector<FaceHandle> face(mesh.n_faces());
+  std::vector<VertexHandle*> keptVertices;
+  std::vector<HalfedgeHandle*> noHalfedges;
+  std::vector<FaceHandle*> keptFaces;
+  for (const auto v : mesh.all_vertices())
+    if (!mesh.status(v).deleted()) vertex[v.idx()] = v, keptVertices.push_back(&vertex[v.idx()]);
+  for (const auto f : mesh.all_faces())
+    if (!mesh.status(f).deleted()) face[f.idx()] = f, keptFaces.push_back(&face[f.idx()]);
+  mesh.garbage_collection(keptVertices, noHalfedges, keptFaces);
+  std::vector<Origin> vertexOrigin(mesh.n_vertices());
+  std::vector<int> faceOrigin(mesh.n_faces());
+  for (std::size_t v = 0; v < vertex.size(); ++v)
+    if (vertex[v].is_valid()) vertexOrigin[vertex[v].idx()] = refined.vertexOrigin[v];
+  for (std::size_t f = 0; f < face.size(); ++f)
+    if (face[f].is_valid()) faceOrigin[face[f].idx()] = refined.faceOrigin[f];
+  refined.vertexOrigin = std::move(vertexOrigin);
+  refined.faceOrigin = std::move(faceOrigin);
+  return vertex;
 }
 
 void relax(const SurfaceMesh& input, RefinedMesh& refined) {
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = input.n_vertices(); i < refined.mesh.n_vertices(); ++i) {
       const VertexHandle v{int(i)};
-      const Origin before = refined.vertexOrigin[i], goal = amongNeighbours(input, refined, v);
+      const Origin before = refined.vertexOrigin[i];
       const double least = smallestTriangle(input, refined, v, before);
+      if (least > kGood) continue;
+      const Origin goal = amongNeighbours(input, refined, v);
       for (const double step : {1.0, 0.5, 0.2}) {
         Origin place = before;
         place.weights = (1 - step) * before.weights + step * goal.weights;

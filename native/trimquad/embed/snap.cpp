@@ -43,6 +43,7 @@ class Snapping {
         changed = true, ++count;
       }
     }
+    if (count == 0) return 0;
     const auto renamed = compact(refined_);
     for (VertexHandle* node : nodes_) *node = renamed[node->idx()];
     for (EdgePath* path : paths_)

@@ -1,5 +1,6 @@
 #include "trimquad/gridmap/grid_map.h"
 
+#include "trimquad/gridmap/grid_offset.h"
 #include "trimquad/gridmap/node_relations.h"
 #include "trimquad/seamless/solve_map.h"
 
@@ -38,9 +39,11 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
                 const Progress& progress) {
   GridMap map;
   if (seamless.seams.rotation.empty() && seamless.aligned.empty() && seamless.featurePoints.empty()) {
-    // Nothing is bound to integers: the seamless map is a grid map.
+    // Nothing is bound to integers: the seamless map is a grid map, wherever it lies.
     map.counters = seamless.counters;
     static_cast<Parametrization&>(map) = seamless;
+    const FixedVector offset = offsetOffBoundary(map);
+    for (FixedVector& x : map.corner) x = x + offset;
     verify(map, true);
     return map;
   }

@@ -1,16 +1,49 @@
 #include "trimquad/mesh/surface_mesh.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "trimquad/base/error.h"
 
 namespace trimquad {
+namespace {
+
+/// The sides of triangles, by the vertex they start from, in the order of their ends.
+class Sides {
+ public:
+  struct Side {
+    int to, triangle;
+    friend auto operator<=>(const Side&, const Side&) = default;
+  };
+
+  explicit Sides(const TriangleSoup& soup) : begin_(soup.points.size() + 1, 0), sides_(3 * soup.triangles.size()) {
+    for (const auto& corner : soup.triangles)
+      for (const int v : corner) ++begin_[v + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    auto next = begin_;
+    for (int t = 0; t < int(soup.triangles.size()); ++t)
+      for (int k = 0; k < 3; ++k)
+        sides_[next[soup.triangles[t][k]]++] = {soup.triangles[t][(k + 1) % 3], t};
+    for (std::size_t v = 0; v < soup.points.size(); ++v)
+      std::sort(sides_.begin() + begin_[v], sides_.begin() + begin_[v + 1]);
+  }
+
+  std::vector<Side>::const_iterator begin(int v) const { return sides_.begin() + begin_[v]; }
+  std::vector<Side>::const_iterator end(int v) const { return sides_.begin() + begin_[v + 1]; }
+  bool contain(int from, int to) const {
+    return std::any_of(begin(from), end(from), [&](const Side& side) { return side.to == to; });
+  }
+
+ private:
+  std::vector<int> begin_;  ///< by vertex, where its sides begin
+  std::vector<Side> sides_;
+};
+
+}  // namespace
 
 SurfaceMesh buildSurfaceMesh(const TriangleSoup& soup) {
   const int vertexCount = int(soup.points.size());
-  // OpenMesh prints when it meets a non-manifold edge, so every condition is checked before it sees the triangles.
-  std::vector<std::array<int, 3>> sides;  // from, to, triangle
-  sides.reserve(3 * soup.triangles.size());
   for (int t = 0; t < int(soup.triangles.size()); ++t) {
     const auto& corner = soup.triangles[t];
     for (int k = 0; k < 3; ++k) {
@@ -18,31 +51,31 @@ SurfaceMesh buildSurfaceMesh(const TriangleSoup& soup) {
         throw inputError("tessellate", "a triangle names a vertex that does not exist", "triangle " + std::to_string(t));
       if (corner[k] == corner[(k + 1) % 3])
         throw inputError("tessellate", "a triangle names one vertex twice", "triangle " + std::to_string(t));
-      sides.push_back({corner[k], corner[(k + 1) % 3], t});
     }
   }
-  std::sort(sides.begin(), sides.end());
-  for (size_t i = 1; i < sides.size(); ++i)
-    if (sides[i][0] == sides[i - 1][0] && sides[i][1] == sides[i - 1][1])
-      throw inputError("tessellate", "an edge has more than two triangles, or two that disagree in orientation",
-                       "triangles " + std::to_string(sides[i - 1][2]) + " and " + std::to_string(sides[i][2]),
-                       soup.points[sides[i][0]]);
+  // OpenMesh prints when it meets a non-manifold edge, so every condition is checked before it sees the triangles.
+  const Sides sides(soup);
+  for (int v = 0; v < vertexCount; ++v)
+    for (auto side = sides.begin(v); side != sides.end(v); ++side)
+      if (side != sides.begin(v) && side[-1].to == side->to)
+        throw inputError("tessellate", "an edge has more than two triangles, or two that disagree in orientation",
+                         "triangles " + std::to_string(side[-1].triangle) + " and " + std::to_string(side->triangle),
+                         soup.points[v]);
 
   SurfaceMesh mesh;
-  mesh.reserve(soup.points.size(), sides.size() / 2 + sides.size() / 8, soup.triangles.size());
+  mesh.reserve(soup.points.size(), 3 * soup.triangles.size() / 2 + 3 * soup.triangles.size() / 8,
+               soup.triangles.size());
   for (const auto& p : soup.points) mesh.add_vertex(p);
   // OpenMesh's add_face depends on the order of the faces around a vertex where fans are still apart; faces that it
   // cannot take yet are tried again once their neighbours are in. It keeps face numbers, so order must not change:
   // hence a vertex where two fans meet is found beforehand.
-  std::vector<int> fanSides(vertexCount, 0), boundaryStarts(vertexCount, 0);
-  const auto present = [&](int a, int b) {
-    const auto it = std::lower_bound(sides.begin(), sides.end(), std::array<int, 3>{a, b, -1});
-    return it != sides.end() && (*it)[0] == a && (*it)[1] == b;
-  };
-  for (const auto& s : sides)
-    if (!present(s[1], s[0]) && ++boundaryStarts[s[0]] > 1)
-      throw inputError("tessellate", "two sheets of triangles touch in one vertex", "vertex " + std::to_string(s[0]),
-                       soup.points[s[0]]);
+  for (int v = 0; v < vertexCount; ++v) {
+    int boundaryStarts = 0;
+    for (auto side = sides.begin(v); side != sides.end(v); ++side)
+      if (!sides.contain(side->to, v) && ++boundaryStarts > 1)
+        throw inputError("tessellate", "two sheets of triangles touch in one vertex", "vertex " + std::to_string(v),
+                         soup.points[v]);
+  }
   for (int t = 0; t < int(soup.triangles.size()); ++t) {
     const auto& c = soup.triangles[t];
     const VertexHandle a(c[0]), b(c[1]), d(c[2]);

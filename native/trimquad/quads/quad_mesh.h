@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,18 @@ struct QuadMesh {
   std::vector<std::array<QuadPointId, 2>> featureEdges;  ///< sides of cells along aligned edges
   int eulerCharacteristic = 0;
 };
+
+/// Two points that more than one side joins, if there are any: the surface is less than three quads around
+/// there, and the polygons, which only know their points, are no manifold.
+std::optional<std::array<QuadPointId, 2>> doubledSide(const QuadMesh& quads);
+
+/// What the histograms of the paper's Fig. 11 count.
+struct QuadMeasures {
+  std::vector<double> angleDeviations;  ///< degrees, of the corners of full quads at inner points from 90
+  std::vector<double> edgeLengths;      ///< model units, each edge of a full quad once
+};
+
+QuadMeasures measures(const QuadMesh& quads);
 
 /// What report.json says about a quad mesh.
 struct QuadStatistics {

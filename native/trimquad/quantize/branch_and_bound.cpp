@@ -1,25 +1,30 @@
 #include "trimquad/quantize/branch_and_bound.h"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <queue>
-
-#include "trimquad/quantize/deviation_flow.h"
 
 namespace trimquad {
 namespace {
 
 /// Objectives that differ by less are equal: the flow's costs are rounded.
 constexpr double kEqual = 1e-5;
+/// Every so many branches, the search goes straight down.
+constexpr int kBranchesPerDescent = 100;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct Branch {
   LengthBounds bounds;
   DeviationFlow flow;
   int number;
+  bool isSplit = false;
 };
+using BranchPointer = std::shared_ptr<Branch>;
 
 /// The one with the least bound first; the newer one of equals, which is deeper.
 struct Later {
-  bool operator()(const std::shared_ptr<Branch>& a, const std::shared_ptr<Branch>& b) const {
+  bool operator()(const BranchPointer& a, const BranchPointer& b) const {
     if (a->flow.objective != b->flow.objective) return a->flow.objective > b->flow.objective;
     return a->number < b->number;
   }
@@ -27,109 +32,165 @@ struct Later {
 
 class Search {
  public:
-  Search(const Dual& dual, const Objective& objective, const SeparationTest& separation, const ArcLengths& q,
+  Search(const Dual& dual, const DoubleCover& cover, const SeparationTest& separation, const ArcLengths& q,
          long long mostWork)
       : dual_(dual),
-        objective_(objective),
+        cover_(cover),
         separation_(separation),
         best_(q),
-        bestObjective_(objective(q)),
+        bestObjective_(cover.objective()(q)),
         mostWork_(mostWork) {}
 
-  Optimum run(const Progress& progress) && {
-    add(boundsOfSeparation(dual_, separation_), best_);
-    double bound = bestObjective_;
+  Optimum run(const DeviationFlow& flow, const Progress& progress) && {
+    if (flow.objective < bestObjective_ - kEqual)
+      open_.push(std::make_shared<Branch>(Branch{boundsOfSeparation(dual_, separation_), flow, count_++}));
+    int nextDescent = 0;
     while (!open_.empty()) {
-      progress.check();
-      const auto branch = open_.top();
-      if (branch->flow.objective >= bestObjective_ - kEqual) return {best_, bestObjective_, true};
-      if (count_ * (long long)(best_.size()) > mostWork_) {
-        bound = branch->flow.objective;
-        return {best_, bound, false};
+      const BranchPointer branch = open_.top();
+      if (branch->isSplit) {
+        open_.pop();
+        continue;
       }
+      if (branch->flow.objective >= bestObjective_ - kEqual) break;
+      if (isWorkDone()) return {best_, branch->flow.objective, false};
       open_.pop();
-      split(*branch);
+      BranchPointer next = split(*branch, progress);
+      if (count_ < nextDescent) continue;
+      while (next && !isWorkDone() && next->flow.objective < bestObjective_ - kEqual)
+        next = split(*next, progress);
+      nextDescent = count_ + kBranchesPerDescent;
     }
     return {best_, bestObjective_, true};
   }
 
  private:
-  void add(LengthBounds bounds, const ArcLengths& near) {
-    auto flow = leastDeviation(dual_, objective_, bounds, near);
-    if (!flow || flow->objective >= bestObjective_ - kEqual) return;
-    open_.push(std::make_shared<Branch>(Branch{std::move(bounds), std::move(*flow), count_++}));
+  bool isWorkDone() const { return count_ * (long long)(best_.size()) > mostWork_; }
+
+  /// Adds the parts that make up a branch. Returns the one with the least bound, none where there is none.
+  BranchPointer split(Branch& branch, const Progress& progress) {
+    progress.check();
+    branch.isSplit = true;
+    children_.clear();
+    if (const auto half = halfArc(branch))
+      splitOnHalf(branch, *half);
+    else
+      splitOnCollapse(branch);
+    BranchPointer least;
+    for (const BranchPointer& child : children_) {
+      open_.push(child);
+      if (!least || child->flow.objective < least->flow.objective) least = child;
+    }
+    return least;
   }
 
-  void split(const Branch& branch) {
-    ArcLengths q;
+  void add(LengthBounds bounds, const Branch& parent) {
+    auto flow = leastDeviation(cover_, bounds, parent.flow);
+    ++count_;
+    if (!flow || flow->objective >= bestObjective_ - kEqual) return;
+    children_.push_back(std::make_shared<Branch>(Branch{std::move(bounds), std::move(*flow), count_}));
+  }
+
+  std::optional<ArcId> halfArc(const Branch& branch) const {
     std::optional<ArcId> half;
-    for (std::size_t a = 0; a < branch.flow.twice.size(); ++a) {
-      q.push_back(branch.flow.twice[a] / 2);
+    for (std::size_t a = 0; a < branch.flow.twice.size(); ++a)
       if (branch.flow.twice[a] % 2 != 0 && (!half || dual_.uses[a].size() < dual_.uses[half->index].size()))
         half = ArcId{int(a)};
-    }
-    if (half) {
-      LengthBounds below = branch.bounds, above = branch.bounds;
-      below.most[half->index] = q[half->index];
-      above.least[half->index] = q[half->index] + 1;
-      add(std::move(below), q);
-      add(std::move(above), q);
-      return;
-    }
-    const auto collapse = separation_.fault(q);
-    if (!collapse) {
-      const double objective = objective_(q);
+    return half;
+  }
+
+  void splitOnHalf(const Branch& branch, ArcId half) {
+    const int below = branch.flow.twice[half.index] / 2;
+    LengthBounds shorter = branch.bounds, longer = branch.bounds;
+    shorter.most[half.index] = below;
+    longer.least[half.index] = below + 1;
+    add(std::move(shorter), branch);
+    add(std::move(longer), branch);
+  }
+
+  void splitOnCollapse(const Branch& branch) {
+    ArcLengths q;
+    for (const int twice : branch.flow.twice) q.push_back(twice / 2);
+    const auto faults = separation_.faults(q);
+    if (faults.empty()) {
+      const double objective = cover_.objective()(q);
       if (objective < bestObjective_) best_ = q, bestObjective_ = objective;
       return;
     }
-    splitOn(branch, *collapse, q);
+    // The collapse that is dearest to undo, and of these the one with the fewest ways.
+    const Collapse* dearest = nullptr;
+    std::pair<double, long> most{-1, 0};
+    for (const Collapse& fault : faults) {
+      const std::pair<double, long> price{leastPrice(branch, fault, q),
+                                          -long(fault.zeroArcs.size() + fault.others.size())};
+      if (!dearest || price > most) dearest = &fault, most = price;
+    }
+    splitOn(branch, *dearest, q);
+  }
+
+  /// What it costs at least to undo a collapse, by the potentials.
+  double leastPrice(const Branch& branch, const Collapse& fault, const ArcLengths& q) const {
+    double least = kNever;
+    const auto offer = [&](ArcId a, int change) {
+      const int to = q[a.index] + change;
+      if (to < branch.bounds.least[a.index] ||
+          (branch.bounds.most[a.index] && to > *branch.bounds.most[a.index]))
+        return;
+      least = std::min(least, branch.flow.cover.leastCost(cover_, a, change));
+    };
+    for (const ArcId a : fault.zeroArcs) offer(a, 1);
+    for (const ArcId a : fault.mightVanish) offer(a, -1);
+    for (const ArcId a : fault.others) offer(a, 1), offer(a, -1);
+    return least;
   }
 
   /// One of the collapse's arcs must have another length: the first does, or the first stays and the second
   /// does, ...
   void splitOn(const Branch& branch, const Collapse& collapse, const ArcLengths& q) {
     LengthBounds bounds = branch.bounds;
-    splitOnLengths(collapse.zeroArcs, q, bounds);
+    splitOnLengths(branch, collapse.zeroArcs, q, bounds);
     for (const ArcId a : collapse.mightVanish) {
       if (bounds.least[a.index] == 0) {
         LengthBounds zero = bounds;
         zero.most[a.index] = 0;
-        add(std::move(zero), q);
+        add(std::move(zero), branch);
       }
       bounds.least[a.index] = std::max(bounds.least[a.index], 1);
     }
-    splitOnLengths(collapse.others, q, bounds);
+    splitOnLengths(branch, collapse.others, q, bounds);
   }
 
-  void splitOnLengths(const std::vector<ArcId>& arcs, const ArcLengths& q, LengthBounds& bounds) {
+  void splitOnLengths(const Branch& branch, const std::vector<ArcId>& arcs, const ArcLengths& q,
+                      LengthBounds& bounds) {
     for (const ArcId a : arcs) {
       if (bounds.least[a.index] == bounds.most[a.index]) continue;
       LengthBounds above = bounds;
       above.least[a.index] = q[a.index] + 1;
-      if (!above.most[a.index] || above.least[a.index] <= *above.most[a.index]) add(std::move(above), q);
+      if (!above.most[a.index] || above.least[a.index] <= *above.most[a.index]) add(std::move(above), branch);
       LengthBounds below = bounds;
       below.most[a.index] = q[a.index] - 1;
-      if (below.least[a.index] <= *below.most[a.index]) add(std::move(below), q);
+      if (below.least[a.index] <= *below.most[a.index]) add(std::move(below), branch);
       bounds.least[a.index] = q[a.index];
       bounds.most[a.index] = q[a.index];
     }
   }
 
   const Dual& dual_;
-  const Objective& objective_;
+  const DoubleCover& cover_;
   const SeparationTest& separation_;
   ArcLengths best_;
   double bestObjective_;
   long long mostWork_;
   int count_ = 0;
-  std::priority_queue<std::shared_ptr<Branch>, std::vector<std::shared_ptr<Branch>>, Later> open_;
+  std::vector<BranchPointer> children_;  ///< of the branch that is being split
+  std::priority_queue<BranchPointer, std::vector<BranchPointer>, Later> open_;
 };
 
 }  // namespace
 
-Optimum leastLengths(const Dual& dual, const Objective& objective, const SeparationTest& separation,
-                     const ArcLengths& q, long long mostWork, const Progress& progress) {
-  return Search(dual, objective, separation, q, mostWork).run(progress);
+Optimum leastLengths(const Dual& dual, const DoubleCover& cover, const SeparationTest& separation,
+                     const ArcLengths& q, const DeviationFlow& flow, long long mostWork,
+                     const Progress& progress) {
+  return Search(dual, cover, separation, q, mostWork).run(flow, progress);
 }
 
 }  // namespace trimquad

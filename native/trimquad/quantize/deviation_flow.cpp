@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "trimquad/base/error.h"
 
@@ -13,10 +14,8 @@ namespace trimquad {
 namespace {
 
 using Graph = lemon::SmartDigraph;
-using Cost = long long;
+using Cost = DoubleCover::Cost;
 
-/// Costs are rounded to this part of the objective's unit.
-constexpr double kCostsPerUnit = double(1 << 24);
 /// Windows reach so far to both sides.
 constexpr int kWindow = 3;
 /// Collapses are repaired in so many rounds at most.
@@ -38,48 +37,38 @@ struct Bundle {
   std::vector<Graph::Arc> arcs;
 };
 
-class DoubleCover {
+/// A least-cost flow for costs that are exact in each arc's window.
+class WindowFlow {
  public:
-  DoubleCover(const Dual& dual, const Objective& objective, const LengthBounds& bounds)
-      : dual_(dual), objective_(objective), bounds_(bounds) {}
+  WindowFlow(const DoubleCover& cover, const LengthBounds& bounds) : cover_(cover), bounds_(bounds) {}
 
-  /// Both lengths of each arc in the cover, least for costs that are exact in each arc's window.
-  std::optional<std::vector<std::array<int, 2>>> solve(const std::vector<Window>& windows) {
+  std::optional<CoverFlow> solve(const std::vector<Window>& windows) const {
     Graph graph;
-    for (std::size_t k = 0; k < 2 * dual_.terms.size() + 1; ++k) graph.addNode();
-    const Graph::Node border = graph.nodeFromId(int(2 * dual_.terms.size()));
-    const auto node = [&](EquationId e, bool second) { return graph.nodeFromId(2 * e.index + second); };
+    for (int k = 0; k < cover_.nodeCount(); ++k) graph.addNode();
     Graph::ArcMap<int> lower(graph), upper(graph);
     Graph::ArcMap<Cost> cost(graph);
-    std::vector<std::array<Bundle, 2>> bundles(dual_.uses.size());
-    for (std::size_t a = 0; a < dual_.uses.size(); ++a) {
-      const auto& uses = dual_.uses[a];
-      for (const bool copy : {false, true}) {
-        // A positive sign takes the flow out of the node, in the first copy; the second copy has all
-        // reversed.
-        const bool out = (uses[0].sign > 0) != copy;
-        const Graph::Node first = node(uses[0].equation, copy);
-        Graph::Node second = border;
-        if (uses.size() == 2) {
-          const bool otherCopy = uses[1].sign == uses[0].sign ? !copy : copy;
-          second = node(uses[1].equation, otherCopy);
-        }
-        bundles[a][copy] = addBundle(graph, out ? first : second, out ? second : first, {int(a)}, windows[a],
-                                     lower, upper, cost);
+    std::vector<std::array<Bundle, 2>> bundles(windows.size());
+    for (std::size_t a = 0; a < windows.size(); ++a)
+      for (const int copy : {0, 1}) {
+        const auto [tail, head] = cover_.edge({int(a)}, copy);
+        bundles[a][copy] = addBundle(graph, graph.nodeFromId(tail), graph.nodeFromId(head), {int(a)},
+                                     windows[a], lower, upper, cost);
       }
-    }
     lemon::NetworkSimplex<Graph, int, Cost> simplex(graph);
     simplex.lowerMap(lower).upperMap(upper).costMap(cost);
     const auto status = simplex.run();
     if (status == lemon::NetworkSimplex<Graph, int, Cost>::INFEASIBLE) return {};
     TRIMQUAD_ASSERT(status == (lemon::NetworkSimplex<Graph, int, Cost>::OPTIMAL));
-    std::vector<std::array<int, 2>> flow(dual_.uses.size());
-    for (std::size_t a = 0; a < dual_.uses.size(); ++a)
-      for (int copy = 0; copy < 2; ++copy) {
-        flow[a][copy] = 0;
-        for (const auto arc : bundles[a][copy].arcs) flow[a][copy] += simplex.flow(arc);
+    CoverFlow found;
+    found.flow.resize(windows.size());
+    for (std::size_t a = 0; a < windows.size(); ++a)
+      for (const int copy : {0, 1}) {
+        found.flow[a][copy] = 0;
+        for (const auto arc : bundles[a][copy].arcs) found.flow[a][copy] += simplex.flow(arc);
       }
-    return flow;
+    for (int k = 0; k < cover_.nodeCount(); ++k)
+      found.potential.push_back(simplex.potential(graph.nodeFromId(k)));
+    return found;
   }
 
  private:
@@ -87,45 +76,50 @@ class DoubleCover {
                    Graph::ArcMap<int>& lower, Graph::ArcMap<int>& upper, Graph::ArcMap<Cost>& cost) const {
     const int least = bounds_.least[a.index];
     const int most = bounds_.most[a.index].value_or(std::numeric_limits<int>::max());
-    const auto slope = [&](int q) { return objective_.of(a, q + 1) - objective_.of(a, q); };
     const int begin = std::clamp(window.begin, least, most), end = std::clamp(window.end, begin, most);
     // Longer than this is never cheaper.
-    const int enough = std::clamp(int(std::ceil(objective_.target[a.index])) + 1, end, most);
+    const int enough = std::clamp(int(std::ceil(cover_.objective().target[a.index])) + 1, end, most);
     Bundle bundle;
-    const auto add = [&](int low, int high, double value) {
+    const auto add = [&](int low, int high, Cost value) {
       const auto arc = graph.addArc(from, to);
-      lower[arc] = low, upper[arc] = high, cost[arc] = std::llround(value * kCostsPerUnit);
+      lower[arc] = low, upper[arc] = high, cost[arc] = value;
       bundle.arcs.push_back(arc);
     };
-    add(least, begin, begin > least ? slope(begin - 1) : 0);
-    for (int q = begin; q < end; ++q) add(0, 1, slope(q));
-    if (end < enough) add(0, enough - end, slope(end));
-    if (enough < most) add(0, most - enough, slope(enough));
+    add(least, begin, begin > least ? cover_.slope(a, begin - 1) : 0);
+    for (int q = begin; q < end; ++q) add(0, 1, cover_.slope(a, q));
+    if (end < enough) add(0, enough - end, cover_.slope(a, end));
+    if (enough < most) add(0, most - enough, cover_.slope(a, enough));
     return bundle;
   }
 
-  const Dual& dual_;
-  const Objective& objective_;
+  const DoubleCover& cover_;
   const LengthBounds& bounds_;
 };
 
+DeviationFlow deviationOf(const DoubleCover& cover, CoverFlow flow) {
+  DeviationFlow found{0, {}, {}};
+  for (std::size_t a = 0; a < flow.flow.size(); ++a) {
+    const auto [x, y] = flow.flow[a];
+    found.objective += 0.5 * (cover.objective().of({int(a)}, x) + cover.objective().of({int(a)}, y));
+    found.twice.push_back(x + y);
+  }
+  found.cover = std::move(flow);
+  return found;
+}
+
 }  // namespace
 
-std::optional<DeviationFlow> leastDeviation(const Dual& dual, const Objective& objective,
-                                            const LengthBounds& bounds, const ArcLengths& start) {
-  DoubleCover cover(dual, objective, bounds);
+std::optional<DeviationFlow> leastDeviation(const DoubleCover& cover, const LengthBounds& bounds,
+                                            const ArcLengths& start) {
+  const WindowFlow window(cover, bounds);
   std::vector<Window> windows;
   for (const int q : start) windows.push_back(Window::around(q));
   for (int round = 0;; ++round) {
-    const auto flow = cover.solve(windows);
+    auto flow = window.solve(windows);
     if (!flow) return {};
     bool isExact = true;
-    DeviationFlow found{0, {}};
-    for (std::size_t a = 0; a < flow->size(); ++a) {
-      const auto [x, y] = (*flow)[a];
-      found.objective += 0.5 * (objective.of({int(a)}, x) + objective.of({int(a)}, y));
-      found.twice.push_back(x + y);
-      for (const int q : {x, y}) {
+    for (std::size_t a = 0; a < windows.size(); ++a)
+      for (const int q : flow->flow[a]) {
         if (windows[a].holds(q)) continue;
         isExact = false;
         const Window there = Window::around(q);
@@ -134,9 +128,15 @@ std::optional<DeviationFlow> leastDeviation(const Dual& dual, const Objective& o
         else
           windows[a] = {std::min(windows[a].begin, there.begin), std::max(windows[a].end, there.end)};
       }
-    }
-    if (isExact) return found;
+    if (isExact) return deviationOf(cover, std::move(*flow));
   }
+}
+
+std::optional<DeviationFlow> leastDeviation(const DoubleCover& cover, const LengthBounds& bounds,
+                                            const DeviationFlow& near) {
+  auto flow = reoptimized(cover, bounds, near.cover);
+  if (!flow) return {};
+  return deviationOf(cover, std::move(*flow));
 }
 
 LengthBounds boundsOfSeparation(const Dual& dual, const SeparationTest& separation) {
@@ -149,62 +149,70 @@ LengthBounds boundsOfSeparation(const Dual& dual, const SeparationTest& separati
 
 namespace {
 
-/// The flow `q` within `bounds`, improved by dropping bounds that turn out not to be needed for separation,
-/// one by one.
-ArcLengths withoutNeedlessBounds(const Dual& dual, const Objective& objective,
-                                 const SeparationTest& separation, LengthBounds bounds, ArcLengths q,
-                                 const Progress& progress) {
-  double least = objective(q);
+/// The whole lengths of a flow, if they are.
+std::optional<ArcLengths> wholeLengths(const DeviationFlow& flow) {
+  ArcLengths q;
+  for (const int twice : flow.twice) {
+    if (twice % 2 != 0) return {};
+    q.push_back(twice / 2);
+  }
+  return q;
+}
+
+/// The flow within `bounds`, improved by dropping bounds that turn out not to be needed for separation, one
+/// by one.
+ArcLengths withoutNeedlessBounds(const DoubleCover& cover, const SeparationTest& separation,
+                                 LengthBounds bounds, DeviationFlow flow, const Progress& progress) {
+  ArcLengths q = *wholeLengths(flow);
   for (std::size_t a = 0; a < q.size(); ++a) {
     if (bounds.least[a] == 0 || q[a] > bounds.least[a] || separation.mustNotVanish({int(a)})) continue;
     progress.check();
-    LengthBounds fewer = bounds;
-    fewer.least[a] = 0;
-    const auto flow = leastDeviation(dual, objective, fewer, q);
-    if (!flow || flow->objective > least - 1e-9) continue;
-    ArcLengths shorter;
-    bool isWhole = true;
-    for (const int twice : flow->twice) shorter.push_back(twice / 2), isWhole = isWhole && twice % 2 == 0;
-    if (!isWhole || separation.fault(shorter)) continue;
-    bounds = std::move(fewer), q = std::move(shorter), least = objective(q);
+    const int least = std::exchange(bounds.least[a], 0);
+    auto shorter = leastDeviation(cover, bounds, flow);
+    TRIMQUAD_ASSERT(shorter);
+    const auto whole = wholeLengths(*shorter);
+    if (shorter->objective > flow.objective - 1e-9 || !whole || separation.fault(*whole)) {
+      bounds.least[a] = least;
+      continue;
+    }
+    flow = std::move(*shorter), q = *whole;
   }
   return q;
 }
 
 }  // namespace
 
-std::optional<ArcLengths> separatedFlow(const Dual& dual, const Objective& objective,
-                                        const SeparationTest& separation, const ArcLengths& start,
+std::optional<ArcLengths> separatedFlow(const Dual& dual, const DoubleCover& cover,
+                                        const SeparationTest& separation, const DeviationFlow& start,
                                         const Progress& progress) {
   LengthBounds bounds = boundsOfSeparation(dual, separation);
-  ArcLengths q = start;
+  DeviationFlow flow = start;
   for (int round = 0; round < kRepairs; ++round) {
     progress.check();
-    const auto flow = leastDeviation(dual, objective, bounds, q);
-    if (!flow) return {};
-    bool isWhole = true;
-    for (std::size_t a = 0; a < q.size(); ++a) {
-      q[a] = flow->twice[a] / 2;
-      if (flow->twice[a] % 2 == 0 || !isWhole) continue;
+    const auto half =
+        std::find_if(flow.twice.begin(), flow.twice.end(), [](int twice) { return twice % 2 != 0; });
+    if (half != flow.twice.end()) {
       // One half length at a time is made whole: upwards, which no separation minds.
-      isWhole = false;
-      bounds.least[a] = q[a] + 1;
+      bounds.least[std::size_t(half - flow.twice.begin())] = *half / 2 + 1;
+    } else {
+      const auto faults = separation.faults(*wholeLengths(flow));
+      if (faults.empty()) return withoutNeedlessBounds(cover, separation, bounds, std::move(flow), progress);
+      bool canChange = false;
+      for (const Collapse& fault : faults) {
+        std::optional<ArcId> longest;
+        for (const ArcId a : fault.zeroArcs)
+          if (bounds.least[a.index] == 0 &&
+              (!longest || cover.objective().target[a.index] > cover.objective().target[longest->index]))
+            longest = a;
+        if (!longest) continue;
+        bounds.least[longest->index] = 1;
+        canChange = true;
+      }
+      if (!canChange) return {};
     }
-    if (!isWhole) continue;
-    const auto faults = separation.faults(q);
-    if (faults.empty()) return withoutNeedlessBounds(dual, objective, separation, bounds, q, progress);
-    bool canChange = false;
-    for (const Collapse& fault : faults) {
-      std::optional<ArcId> longest;
-      for (const ArcId a : fault.zeroArcs)
-        if (bounds.least[a.index] == 0 &&
-            (!longest || objective.target[a.index] > objective.target[longest->index]))
-          longest = a;
-      if (!longest) continue;
-      bounds.least[longest->index] = 1;
-      canChange = true;
-    }
-    if (!canChange) return {};
+    auto next = leastDeviation(cover, bounds, flow);
+    if (!next) return {};
+    flow = std::move(*next);
   }
   return {};
 }

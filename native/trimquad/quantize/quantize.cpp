@@ -10,8 +10,8 @@ namespace {
 
 /// Branches times arcs: milliseconds; finds most optima of T-meshes that are not large.
 constexpr long long kWorkInPassing = 20000;
-/// Up to a minute or so, and some hundred megabytes.
-constexpr long long kWorkForProof = 2000000;
+/// Some seconds, and some hundred megabytes.
+constexpr long long kWorkForProof = 8000000;
 
 }  // namespace
 
@@ -23,13 +23,18 @@ Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, co
   result.method = "greedy";
   result.length = positiveLengths(dual, objective, progress);
   result.steps = improveGreedily(dual, objective, separation, result.length, progress);
-  if (auto other = separatedFlow(dual, objective, separation, result.length, progress)) {
-    const int steps = improveGreedily(dual, objective, separation, *other, progress);
-    if (objective(*other) < objective(result.length)) result.length = std::move(*other), result.steps = steps;
-  }
-  Optimum optimum = leastLengths(dual, objective, separation, result.length,
+  const DoubleCover cover(dual, objective);
+  const auto flow = leastDeviation(cover, boundsOfSeparation(dual, separation), result.length);
+  TRIMQUAD_ASSERT(flow);
+  const auto improved = [&](ArcLengths other) {
+    const int steps = improveGreedily(dual, objective, separation, other, progress);
+    if (objective(other) < objective(result.length)) result.length = std::move(other), result.steps = steps;
+  };
+  if (auto other = separatedFlow(dual, cover, separation, *flow, progress)) improved(std::move(*other));
+  Optimum optimum = leastLengths(dual, cover, separation, result.length, *flow,
                                  options.optimal ? kWorkForProof : kWorkInPassing, progress);
-  result.length = std::move(optimum.length);
+  if (!optimum.proven) improved(optimum.length);
+  if (optimum.proven) result.length = std::move(optimum.length);
   result.lowerBound = optimum.lowerBound;
   if (options.optimal) result.method = optimum.proven ? "optimal" : "bounded";
   TRIMQUAD_ASSERT(isConsistent(dual, result.length));

@@ -246,8 +246,7 @@ SeparationTest::SeparationTest(const Dual& dual, Separation separation)
   for (const auto& arc : tmesh_.arcs)
     for (const NodeId n : {arc.from, arc.to}) {
       if (isCurve(arc)) onCurve_[n.index] = true;
-      if (separation == Separation::Strong && arc.isVirtual && tmesh_[n].kind != TMesh::NodeKind::Virtual)
-        isCritical_[n.index] = true;
+      if (separation == Separation::Strong && arc.isVirtual) isCritical_[n.index] = true;
     }
 }
 

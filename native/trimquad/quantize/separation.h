@@ -10,7 +10,7 @@ namespace trimquad {
 /// Which parts of a surface's boundary must be apart.
 enum class Separation {
   Free,   ///< paper, section 5.2.1: boundary parts may coincide where a zero piece of the boundary joins them
-  Strong  ///< paper, Definition 5.1: no two nodes on the boundary coincide. Needlessly strict, for comparison
+  Strong  ///< paper, Definition 5.1: no two nodes of virtual arcs coincide. Needlessly strict, for comparison
 };
 
 /// Why lengths admit no integer grid map. It stays so as long as all arcs named keep their lengths and those

@@ -72,8 +72,15 @@ class SeedSearch {
   }
 
   Seeds run() && {
+    const auto cone = coneQuarters(map_);
+    std::vector<bool> touchesAligned(mesh_.n_vertices(), false);
+    for (const auto e : map_.aligned)
+      for (const int k : {0, 1})
+        touchesAligned[mesh_.to_vertex_handle(mesh_.halfedge_handle(e, k)).idx()] = true;
+    // Most vertices are regular inner ones, which need no closer look.
     for (const auto v : mesh_.vertices())
-      if (!mesh_.is_isolated(v)) visit(v);
+      if (!mesh_.is_isolated(v) && (cone[v.idx()] != 4 || isFeature_[v.idx()] || touchesAligned[v.idx()]))
+        visit(v);
     for (const auto v : closedAlignedCurves())
       addNode(v, TMesh::NodeKind::Feature, VertexSurroundings(map_, found_.isAligned, v), false);
     if (found_.motorcycles.empty() && found_.alignedCurves.empty()) addRegularNode();

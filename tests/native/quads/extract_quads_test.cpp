@@ -40,6 +40,15 @@ TEST(ExtractQuads, aRectangleOffTheGridHasTrimmedCellsAround) {
   EXPECT_NEAR(s.angleDeviation.max, 0, 1e-6);
 }
 
+TEST(ExtractQuads, sidesOfATubeAreDoubledWhereItIsTwoQuadsAround) {
+  const auto doubled = [](int around) {
+    return doubledSide(extractQuads(gridMapOf(wrapped(12, 8, around / 12.0, 0.5, false)), {}, Progress()))
+        .has_value();
+  };
+  EXPECT_TRUE(doubled(2));
+  EXPECT_FALSE(doubled(3));
+}
+
 TEST(ExtractQuads, aRectangleOnTheGridIsAllQuads) {
   const QuadMesh quads = extractSound(rectangle(0, 0, 3, 2, 7, 3));
   EXPECT_EQ(statistics(quads).quads, 6);

@@ -190,8 +190,8 @@ TEST(Quantize, aThinColumnMayLoseItsHeightBetweenNotches) {
     return sum;
   };
   EXPECT_EQ(height(Separation::Free), 0);
-  // Nodes on the same side stay apart by height, every second one at least.
-  EXPECT_GE(height(Separation::Strong), kNotches / 2);
+  // Nodes on the same side stay apart by height, each from the next.
+  EXPECT_EQ(height(Separation::Strong), kNotches - 1);
 }
 
 TEST(Quantize, theProvenOptimumIsTheOptimum) {

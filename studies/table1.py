@@ -1,0 +1,83 @@
+"""Times of the paper's four stages on its models or their nearest equivalents, as docs/table1.md.
+
+    scripts/study table1 DATA [--cores TEXT]
+
+DATA has the models of MODELS under the folders named there.
+"""
+import argparse
+import math
+import os
+
+from stages import Error, Mapped, mesh_size, timed, write_page
+
+# Model and the row of the paper's Table 1 that is nearest: name, triangles, singularities, arcs, seconds of partition,
+# quantization, re-embedding and optimisation.
+PAPER = {
+    "Beetle": (38726, 9, 299, 0.0318, 0.0433, 0.0624, 7.94),
+    "Hand": (3000, 36, 344, 0.0052, 0.0306, 0.0291, 1.83),
+    "Face": (62467, 24, 432, 0.0474, 0.0784, 0.1491, 15.9),
+    "Train Station": (2546, 8, 243, 0.0050, 0.0335, 0.0109, 0.94),
+    "Flat Roof": (40000, 8, 88, 0.0102, 0.0019, 0.0389, 13.0),
+    "Dome Roof": (10000, 5, 96, 0.0086, 0.0023, 0.0098, 1.35),
+    "Wing Profile": (14463, 0, 25, 0.0021, 0.0006, 0.0005, 1.76),
+}
+MODELS = [
+    ("mesh/mask.off", "Face"),
+    ("mesh/beetle.off", "Beetle"),
+    ("mesh/hand_rem.obj", "Hand"),
+    ("mesh/hand_lowres.obj", "Hand"),
+    ("arch/train-station.off", "Train Station"),
+    ("arch/aqua-center.off", "Dome Roof"),
+    ("mesh/Flat.off", "Flat Roof"),
+    ("mesh/nacaFlow_unstructured_medium.obj", "Wing Profile"),
+]
+QUADS = 1000
+HEADER = """# Times of the stages
+
+Made by `scripts/study table1 DATA`. Every model with a free and with an aligned boundary (closed ones have none), sharp
+edges not followed, about {quads} quads. Seconds of one processor of {cores}; the least of several runs where they are
+short. Below the two the nearest row of Table 1 in Lyon, Campen, Bommes and Kobbelt 2019, measured there "on a desktop
+machine using a single-threaded implementation"; models of the same name are not always the same mesh.
+
+`re-embed` and `optimize after it` are the constructive route of the paper. `optimize` is the grid map by the direct route,
+which is taken first; without singularities and aligned edges the seamless map itself is one. A dash: the direct route
+fails, and the constructive one is taken.
+
+| model | triangles | singular | arcs | partition | quantize | re-embed | optimize after it | optimize |
+|---|---|---|---|---|---|---|---|---|"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("data")
+    parser.add_argument("--cores", default="a virtual machine with 2 cores", help="the machine, in words")
+    options = parser.parse_args()
+    lines = [HEADER.format(quads=QUADS, cores=options.cores)]
+    for name, peer in MODELS:
+        for boundary in ("free", "aligned"):
+            lines.append(row(os.path.join(options.data, name), name, boundary))
+        triangles, singular, arcs, *seconds = PAPER[peer]
+        partition, quantize, reembed, optimize = (f"*{s:.4g}*" for s in seconds)
+        lines.append(f"| *paper: {peer}* | *{triangles}* | *{singular}* | *{arcs}* | {partition} | {quantize} "
+                     f"| {reembed} | {optimize} | |")
+    write_page("table1.md", lines)
+
+
+def row(path, name, boundary):
+    area, _ = mesh_size(path)
+    mapped = Mapped(path, math.sqrt(area / QUADS), boundary)
+    tmesh, partition = timed(mapped.partition)
+    quantization, quantize = timed(mapped.quantize, tmesh)
+    embedded, reembed = timed(mapped.embedded, tmesh, quantization)
+    _, optimize_after = timed(mapped.optimized, embedded, prepare=mapped.fresh_model)
+    try:
+        _, optimize = timed(mapped.direct, tmesh, quantization)
+    except Error:
+        optimize = None
+    seconds = (partition, quantize, reembed, optimize_after, optimize)
+    return (f"| {name}, {boundary} | {mapped.region.triangles} | {len(mapped.field.singular_vertices)} | {len(tmesh.arcs)} | "
+            + " | ".join("-" if s is None else f"{s:.2g}" if s < 0.01 else f"{s:.3g}" for s in seconds) + " |")
+
+
+if __name__ == "__main__":
+    main()
