@@ -22,6 +22,8 @@ ENOUGH = 0.95
 # each time to this part of the tolerance before.
 REFITS = 3
 REFIT_PART = 0.4
+# Times that the edges of a region's quads are halved where it is too narrow for them.
+HALVINGS = 3
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 
@@ -38,6 +40,7 @@ class RegionResult:
         self.region = self.mapped_region = region
         self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
+        self.edge_length = None  # of its quads
         self.refits = self.field_edits = 0
         self.seconds = {}
 
@@ -234,6 +237,10 @@ def _map_regions(result, progress):
         for done in [pool.submit(_map_region, r, k, result, progress) for k, r in enumerate(result.regions)]:
             done.result()
     for item in result.regions:
+        if item.error is None and item.edge_length != result.options.edge_length:
+            result.warnings.append(
+                f"region '{item.name}' is too narrow for the quads; its edge length is {item.edge_length:.6g}"
+            )
         given_up = item.field and item.region.features["aligned_edges"] - item.field.aligned_edges
         if given_up:
             result.warnings.append(
@@ -262,15 +269,14 @@ def _grid_map(item, index, result, run):
 
 
 def _polygonal(quads, item, options):
-    """The quads; None, and an error in the region, where they were asked for and their polygons are no manifold."""
+    """The quads. Raises Error where they were asked for and their polygons are no manifold."""
     place = quads.doubled_side
-    if place is None or "quads" not in options.write:
-        return quads
-    item.error = Error(
-        "stage", "extract", "two quads would share more than one side, the surface is less than three quads around there; "
-        "use a shorter edge length", item.name, place,
-    )
-    return None
+    if place is not None and "quads" in options.write:
+        raise Error(
+            "stage", "extract", "two quads would share more than one side, the surface is less than three quads around "
+            "there; use a shorter edge length", item.name, place, coarse=True,
+        )
+    return quads
 
 
 def _fit(item, tolerance, result, progress):
@@ -281,7 +287,29 @@ def _fit(item, tolerance, result, progress):
 
 
 def _map_region(item, index, result, progress):
-    """The stages of one region in their order; the first Error ends it and is kept in the region."""
+    """The stages of one region, with shorter edges where it is too narrow for quads as large as they are wanted. The
+    first Error that these do not cure ends it and is kept in the region."""
+    item.edge_length = result.options.edge_length
+    for halving in range(HALVINGS + 1):
+        try:
+            return _try_region(item, index, result, progress)
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+            refined = item.mapped_region is not item.region
+            if error.coarse and halving < HALVINGS and not (refined and item.guidance is not None):
+                item.edge_length /= 2
+                item.region = item.mapped_region
+                item.grid = item.quads = item.fitted = None
+                continue
+            item.error = error
+        except MemoryError as error:
+            item.error = system_error("memory", error)
+        return
+
+
+def _try_region(item, index, result, progress):
+    """The stages of one region in their order."""
     native = load()
     options = result.options
 
@@ -293,22 +321,15 @@ def _map_region(item, index, result, progress):
             finally:
                 item.seconds[stage] = time.monotonic() - started
 
-    try:
-        seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.edge_length)
-        item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
-        item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
-        item.tmesh = run("partition", native.partition, item.seamless)
-        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
-        _grid_map(item, index, result, run)
-        item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
-        if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
-            item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
-    except Error as error:
-        if error.kind == "cancelled":
-            raise
-        item.error = error
-    except MemoryError as error:
-        item.error = system_error("memory", error)
+    seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, item.edge_length)
+    item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
+    item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
+    item.tmesh = run("partition", native.partition, item.seamless)
+    item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
+    _grid_map(item, index, result, run)
+    item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
+    if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
+        item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
 
 
 def _refit_faulty(result, progress):

@@ -9,9 +9,10 @@ class Error(Exception):
     message   what is wrong and what the user can do
     where     the element it happened at, such as 'Face3' or 'line 12'; may be empty
     position  (x, y, z) in model units, or None
+    coarse    whether shorter edges of the quads are the cure
     """
 
-    def __init__(self, kind, stage, message, where="", position=None):
+    def __init__(self, kind, stage, message, where="", position=None, coarse=False):
         text = message
         if where:
             text += f" ({where})"
@@ -20,6 +21,7 @@ class Error(Exception):
         super().__init__(" ".join(text.split()))
         self.kind = kind
         self.stage = stage
+        self.coarse = coarse
         self.message = message
         self.where = where
         self.position = None if position is None else tuple(float(x) for x in position)

@@ -43,7 +43,7 @@ def write_pictures(result, path_of, progress):
     polygons = [r.polygons for r in result.regions if r.quads is not None]
     if polygons:
         _save(path_of("quads.png"), [_quads(p) for p in polygons], [_lines(p) for p in polygons])
-        counts = [histograms(r.quads, result.options.edge_length) for r in result.regions if r.quads is not None]
+        counts = [histograms(r.quads, r.edge_length) for r in result.regions if r.quads is not None]
         write_histograms([("", sum_of(counts))], path_of("histograms.png"))
     progress.check()
     if result.native_shape is not None:

@@ -60,7 +60,7 @@ def _region_report(result, index, item, seconds):
         "embedding": item.embedding,
         "gridmap": item.grid and {"flipped": 0, **item.grid.counters},
         "quads": item.quads and item.quads.statistics,
-        "histograms": item.quads and histograms(item.quads, result.options.edge_length),
+        "histograms": item.quads and histograms(item.quads, item.edge_length),
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
         "seconds": seconds,
     }

@@ -16,6 +16,7 @@ const char* kindName(Error::Kind kind) {
     case Error::Kind::Input:
       return "input";
     case Error::Kind::Stage:
+    case Error::Kind::Coarse:
       return "stage";
     case Error::Kind::Cancelled:
       return "cancelled";
@@ -32,6 +33,7 @@ void raise(const Error& error) {
   const py::object type = py::module_::import("trimquad.error").attr("Error");
   const py::object value =
       type(kindName(error.kind()), error.stage(), error.message(), error.where(), position(error));
+  value.attr("coarse") = error.kind() == Error::Kind::Coarse;
   PyErr_SetObject(type.ptr(), value.ptr());
 }
 

@@ -13,6 +13,7 @@ class Error : public std::runtime_error {
   enum class Kind {
     Input,     ///< the input or an option is unusable (exit status 2)
     Stage,     ///< a stage failed on a usable input (exit status 3)
+    Coarse,    ///< a stage failed because the quads are too large for the region (exit status 3)
     Cancelled  ///< the user asked to stop (exit status 130)
   };
 
@@ -43,6 +44,11 @@ inline Error inputError(std::string stage, std::string message, std::string wher
 inline Error stageError(std::string stage, std::string message, std::string where = {},
                         std::optional<Eigen::Vector3d> position = {}) {
   return {Error::Kind::Stage, std::move(stage), std::move(message), std::move(where), position};
+}
+
+inline Error coarseError(std::string stage, std::string message, std::string where = {},
+                         std::optional<Eigen::Vector3d> position = {}) {
+  return {Error::Kind::Coarse, std::move(stage), std::move(message), std::move(where), position};
 }
 
 /// An invariant that the mathematics promises, checked in release builds too. Never for input.

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <set>
 
 #include "trimquad/base/error.h"
 #include "trimquad/brep/surface_normal.h"
@@ -20,8 +19,6 @@ using Eigen::Vector3d;
 using Triangle = WeldedMesh::Triangle;
 
 constexpr std::array<double, 3> kSamples{1. / 6, 1. / 2, 5. / 6};  // along a side
-/// A surface that turns by more than this within a triangle's width is bent there, for the triangles.
-constexpr double kTightTurn = std::numbers::pi / 2;
 
 /// True normal at the fraction `s` of the triangle's side k, `reach` inside; `along` false runs the side
 /// backwards.
@@ -38,47 +35,11 @@ Vector3d normalBesideSide(const CadModel& model, const WeldedMesh& mesh, const T
   return surfaceNormal(*model.faces[triangle.face].surface, (1 - share) * uv + share * apex, inside);
 }
 
-Vector3d triangleNormal(const WeldedMesh& mesh, const Triangle& triangle) {
-  const Vector3d& a = mesh.vertices[triangle.vertex[0]].point;
-  return (mesh.vertices[triangle.vertex[1]].point - a).cross(mesh.vertices[triangle.vertex[2]].point - a);
-}
-
-double angleBetween(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// Of the triangles of one face that can be reached from the one beside a side without going farther than
-/// `reach` from its line, or farther along it than its length, the normal that lies farthest from the first
-/// one's.
-Vector3d farthestNormal(const WeldedMesh& mesh, const SideUses& uses, int triangle,
-                        const WeldedMesh::Side& side, double reach) {
-  const Vector3d from = mesh.vertices[side.from].point, along = mesh.vertices[side.to].point - from;
-  const auto isNear = [&](const Vector3d& p) {
-    const double part = (p - from).dot(along) / along.squaredNorm();
-    return part > -1 && part < 2 && (p - from - part * along).norm() < reach;
-  };
-  const Vector3d first = triangleNormal(mesh, mesh.triangles[triangle]);
-  Vector3d result = first;
-  std::set<int> seen{triangle};
-  for (std::vector<int> open{triangle}; !open.empty();) {
-    const int t = open.back();
-    open.pop_back();
-    const Vector3d normal = triangleNormal(mesh, mesh.triangles[t]);
-    if (angleBetween(first, normal) > angleBetween(first, result)) result = normal;
-    for (int k = 0; k < 3; ++k) {
-      const auto& use = uses[mesh.triangles[t].side[k]];
-      if (mesh.sides[mesh.triangles[t].side[k]].cadEdge || use.size() != 2) continue;
-      const int next = use[use[0].first == t ? 1 : 0].first;
-      Vector3d middle = Vector3d::Zero();
-      for (const int v : mesh.triangles[next].vertex) middle += mesh.vertices[v].point / 3;
-      if (isNear(middle) && seen.insert(next).second) open.push_back(next);
-    }
-  }
-  return result;
-}
-
 double areaOf(const WeldedMesh& mesh, const Triangle& triangle) {
-  return 0.5 * triangleNormal(mesh, triangle).norm();
+  const Vector3d& a = mesh.vertices[triangle.vertex[0]].point;
+  return 0.5 * (mesh.vertices[triangle.vertex[1]].point - a)
+                   .cross(mesh.vertices[triangle.vertex[2]].point - a)
+                   .norm();
 }
 
 double volumeOf(const WeldedMesh& mesh, const Triangle& triangle, const Vector3d& origin) {
@@ -132,8 +93,8 @@ bool runsForward(const WeldedMesh& mesh, const std::pair<int, int>& use) {
 }
 
 Sharpness sharpness(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                    const std::vector<char>& reversed, double angle, const FeatureReach& reach) {
-  std::vector<double> sharp(model.edges.size(), 0), smooth = sharp, tight = sharp, wide = sharp;
+                    const std::vector<char>& reversed, double angle, double reach) {
+  std::vector<double> sharp(model.edges.size(), 0), smooth(model.edges.size(), 0);
   const std::vector<char> no(model.edges.size(), 0);
   Sharpness result{no, no, no, std::vector<char>(mesh.sides.size(), 0)};
   for (size_t s = 0; s < uses.size(); ++s) {
@@ -155,19 +116,14 @@ Sharpness sharpness(const CadModel& model, const WeldedMesh& mesh, const SideUse
         if (reversed[mesh.triangles[t].face]) normal[i] = -normal[i];
       }
       if (normal[0].isZero() || normal[1].isZero()) return {};
-      return angleBetween(normal[0], normal[1]);
+      return std::atan2(normal[0].cross(normal[1]).norm(), normal[0].dot(normal[1]));
     };
     for (const double fraction : kSamples) {
       if (const auto turn = turnAt(fraction, 0)) (*turn > angle ? sharp : smooth)[*side.cadEdge] += length;
-      if (turnAt(fraction, reach.crease).value_or(0) > angle) result.crease[s] = 1;
+      if (turnAt(fraction, reach).value_or(0) > angle) result.crease[s] = 1;
     }
-    const int left = uses[s][0].first, right = uses[s][1].first;
-    if (mesh.triangles[left].face == mesh.triangles[right].face) continue;
-    const double turn = angleBetween(farthestNormal(mesh, uses, left, side, reach.tight),
-                                     farthestNormal(mesh, uses, right, side, reach.tight));
-    (turn > std::max(angle, kTightTurn) ? tight : wide)[*side.cadEdge] += length;
   }
-  for (size_t e = 0; e < sharp.size(); ++e) result.sharp[e] = sharp[e] > smooth[e] || tight[e] > wide[e];
+  for (size_t e = 0; e < sharp.size(); ++e) result.sharp[e] = sharp[e] > smooth[e];
   return result;
 }
 
@@ -298,8 +254,7 @@ std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh) {
 }
 
 FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                          const std::vector<char>& reversed, const FeatureOptions& options,
-                          const FeatureReach& reach) {
+                          const std::vector<char>& reversed, const FeatureOptions& options, double reach) {
   using Sharp = FeatureOptions::Sharp;
   const double angle = options.sharp == Sharp::Ignore ? std::numeric_limits<double>::infinity()
                                                       : options.angle * std::numbers::pi / 180;
@@ -312,7 +267,7 @@ FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const S
     dropDangling(model, edges.free, result.cut);
   }
   for (size_t e = 0; e < model.edges.size(); ++e) {
-    // A sharp edge that cannot be cut is still sharp: no smooth surface follows it.
+    // A sharp edge that separates nothing is still sharp: no smooth surface follows it.
     const bool byDefault = result.cut[e] ? options.alignBoundary : bool(edges.sharp[e]);
     result.aligned.push_back((byDefault || chosenAligned[e]) && !freed[e]);
     result.inner.push_back(result.aligned[e] && !result.cut[e]);

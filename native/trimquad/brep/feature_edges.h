@@ -23,12 +23,6 @@ SideUses sideUses(const CadModel& model, const WeldedMesh& mesh);
 /// Throws Error(Input) where that is impossible (a Moebius strip).
 std::vector<char> orientFaces(const CadModel& model, WeldedMesh& mesh);
 
-/// How far on both sides of an edge the surface is looked at, model units.
-struct FeatureReach {
-  double crease;  ///< for creases
-  double tight;   ///< for edges that are sharp for triangles as large as they are wanted
-};
-
 struct FeatureEdges {
   /// By CAD edge: whether the surface is opened there. Free edges; sharp ones that separate regions; and
   /// inner ones.
@@ -38,19 +32,18 @@ struct FeatureEdges {
   std::vector<char> inner;
   /// By CAD edge: whether grid lines must run along it. All inner ones are.
   std::vector<char> aligned;
-  /// By side of the welded mesh: whether the surface turns by more than the feature angle within
-  /// `reach.crease` to both sides of it, on an edge that is not cut. Triangles of about that size must not
+  /// By side of the welded mesh: whether the surface turns by more than the feature angle within `reach`
+  /// (model units) to both sides of it, on an edge that is not cut. Triangles of about that size must not
   /// reach across.
   std::vector<char> crease;
 };
 
 /// What the options make of a model's edges. An edge is sharp where the angle between the true normals of its
-/// two faces exceeds the feature angle on most of its length, or that within `reach.tight` to both sides of
-/// it a right angle (the lip of an inlet, the nose of a blade); chains of sharp edges that end inside a
-/// region do not separate anything. Throws Error(Input, "options") for names of edges that are not there.
+/// two faces exceeds the feature angle on most of its length; chains of sharp edges that end inside a region
+/// do not separate anything and are aligned instead of cut. Throws Error(Input, "options") for names of edges
+/// that are not there.
 FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
-                          const std::vector<char>& reversed, const FeatureOptions& options,
-                          const FeatureReach& reach);
+                          const std::vector<char>& reversed, const FeatureOptions& options, double reach);
 
 /// By vertex of the welded mesh: whether the options name it. Throws Error(Input, "options") for names of
 /// vertices that are not there.

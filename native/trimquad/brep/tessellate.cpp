@@ -24,7 +24,6 @@ namespace {
 /// BRepMesh's triangles only tell where to start on the true surface, so they may be coarser than the
 /// tolerance; the bounds are shares of the diagonal.
 constexpr double kFinestDeflection = 2e-5, kCoarsestDeflection = 2e-4;
-constexpr double kTightReach = 0.5;  ///< wanted edge lengths
 constexpr std::array<double, 3> kDeflectionSteps{1, 5, 25};
 
 void demandPositive(double value, const char* option) {
@@ -37,8 +36,8 @@ CutModel cutIntoRegions(const Shape& shape, double deflection, const TessellateO
   WeldedMesh mesh = weldedMesh(cad, deflection);
   const auto reversed = orientFaces(cad, mesh);
   auto uses = sideUses(cad, mesh);
-  auto features = featureEdges(cad, mesh, uses, reversed, options.features,
-                               {kShortestEdge * options.edgeLength, kTightReach * options.edgeLength});
+  auto features =
+      featureEdges(cad, mesh, uses, reversed, options.features, kShortestEdge * options.edgeLength);
   divideInnerEdges(cad, mesh, features);
   uses = sideUses(cad, mesh);
   return cutRegions(cad, mesh, uses, features, featureVertices(cad, mesh, options.features), reversed);

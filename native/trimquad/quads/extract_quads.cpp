@@ -83,10 +83,10 @@ class Extraction {
       for (const auto& p : loop)
         if (p.kept) polygon.push_back({loops_.pointOf(p)});
       if (polygon.size() < 3 || (pinched && (cell.full || bordersItself(polygon))))
-        throw stageError("extract",
-                         "a quad would touch itself, the surface is less than a quad wide there; use a "
-                         "shorter edge length",
-                         "triangle " + std::to_string(piece.triangle.idx()), position(polygon[0].index));
+        throw coarseError("extract",
+                          "a quad would touch itself, the surface is less than a quad wide there; use a "
+                          "shorter edge length",
+                          "triangle " + std::to_string(piece.triangle.idx()), position(polygon[0].index));
       addSides(c, loop);
     }
     if (pinched || apart) cutIntoSimple(c);

@@ -68,30 +68,37 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
                             region.featurePoints.empty() && admitsNoSingularity(region.mesh);
   const auto withoutSingularities = [&] { return singularityFreeField(region.mesh, guidance, progress); };
   std::optional<Seed> without;
-  if (mayDoWithout &&
-      !tryField(region, options.edgeLength, withoutSingularities, Effort::Easy, progress, result)) {
-    if (result.map.counters.distortionEnd <= kLittleDistortion) return result;
-    without = result;
-  }
+  const auto tryWithout = [&](Effort effort) {
+    if (!without && mayDoWithout &&
+        !tryField(region, options.edgeLength, withoutSingularities, effort, progress, result))
+      without = result;
+    return without && without->map.counters.distortionEnd <= kLittleDistortion;
+  };
+  if (tryWithout(Effort::Easy)) return *without;
 
   std::vector<double> reaches{options.follow == SeedOptions::Follow::Given ? kGivenReach : kCurvatureReach};
   while (reaches.back() > 1) reaches.push_back(reaches.back() / 4);
   if (options.follow != SeedOptions::Follow::Smooth) reaches.push_back(0);
   std::optional<Error> first;
+  std::optional<Seed> with;
   for (const double reach : reaches) {
     const auto field = [&] { return crossField(region, guidance, reach, progress); };
-    if (const auto error = tryField(region, options.edgeLength, field, Effort::Full, progress, result);
-        !error) {
-      // Singularities that do not even make the map a better one are no use.
-      if (!without || result.map.counters.distortionEnd < without->map.counters.distortionEnd) return result;
+    const auto error = tryField(region, options.edgeLength, field, Effort::Full, progress, result);
+    if (!error) {
+      with = result;
       break;
-    } else if (!first)
-      first = error;
+    }
+    if (!first) first = error;
     ++result.fieldEdits;
   }
-  if (!without && mayDoWithout &&
-      !tryField(region, options.edgeLength, withoutSingularities, Effort::Full, progress, result))
-    without = result;
+  // Singularities that do not even make the map a better one are no use.
+  const bool little = tryWithout(Effort::Full);
+  if (with && !little &&
+      (!without || with->map.counters.distortionEnd < without->map.counters.distortionEnd)) {
+    with->fieldSeconds = result.fieldSeconds;
+    with->seamlessSeconds = result.seamlessSeconds;
+    return *with;
+  }
   if (!without) throw *first;
   without->fieldEdits = result.fieldEdits;
   without->fieldSeconds = result.fieldSeconds;

@@ -24,6 +24,18 @@ SheetLine BorderLines::line(int border, int side) const {
   return {sheets_ + b.chart[side], b.start[side], (b.end[side] - b.start[side]) / b.length()};
 }
 
+bool BorderLines::staysOnSurfaces(int border) const {
+  const auto [low, high] = range_[border];
+  if (!(low < high)) return false;
+  for (int side : {0, 1}) {
+    const SheetLine on = line(border, side);
+    const auto& s = on.sheet->surface;
+    for (const Eigen::Vector2d& x : {on.at(low), on.at(high)})
+      if (x[0] < s.firstU() || x[0] > s.lastU() || x[1] < s.firstV() || x[1] > s.lastV()) return false;
+  }
+  return true;
+}
+
 BorderLines::Edge BorderLines::edge(int border) const {
   const SheetLine lines[] = {line(border, 0), line(border, 1)};
   const int axis = layout_.borders[border].axis(0), runs = 1 - axis;

@@ -38,7 +38,10 @@ class BorderLines {
     PlaneCurve onSheet[2];
     bool reversed;  ///< whether it starts at the border's end
   };
+  /// \pre staysOnSurfaces(border)
   Edge edge(int border) const;
+  /// Whether the border runs forward and within the surfaces of both its charts, its ends as they were set.
+  bool staysOnSurfaces(int border) const;
 
  private:
   struct Range {

@@ -275,9 +275,9 @@ ChartPartition blocks(const CellGraph& graph, const Progress& progress) {
       if (!side) {
         const auto& piece = graph.overlay().pieces[graph.pieces(a).front()];
         const auto& mesh = graph.map().mesh;
-        throw stageError("fit", "a quad borders itself at a singularity; use a smaller edge length",
-                         "triangle " + std::to_string(piece.triangle.idx()),
-                         mesh.point(mesh.from_vertex_handle(mesh.halfedge_handle(piece.triangle))));
+        throw coarseError("fit", "a quad borders itself at a singularity; use a smaller edge length",
+                          "triangle " + std::to_string(piece.triangle.idx()),
+                          mesh.point(mesh.from_vertex_handle(mesh.halfedge_handle(piece.triangle))));
       }
       cuts.addLine(*side);
       valid = false;

@@ -348,6 +348,11 @@ void ModelTrimmer::placeInnerPoints() {
       vertices_.push_back({line.sheet->jet(line.at(borders_[r]->endOf(ends[0]))).s, {}});
     }
     for (int b = 0; b < int(layout.borders.size()); ++b) {
+      if (!borders_[r]->staysOnSurfaces(b)) {
+        const SheetLine line = borders_[r]->line(b, 0);
+        throw stageError("fit", "a border between charts leaves the fitted surfaces; use a smaller tolerance",
+                         model_.regions[r].name, line.sheet->jet(line.start).s);
+      }
       auto edge = borders_[r]->edge(b);
       edge.edge.start = {vertexOfPoint_.at({r, layout.borders[b].startPoint})};
       edge.edge.end = {vertexOfPoint_.at({r, layout.borders[b].endPoint})};

@@ -12,6 +12,9 @@
 // After OpenMesh: OpenCASCADE's macros must not reach the mesh headers.
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
@@ -180,6 +183,31 @@ TEST(CadFeaturePoints, aPointInSpaceIsRefused) {
   const auto error = errorOf([&] { tessellated(box, {.points = {{1, 1, 1}}}); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->kind(), Error::Kind::Input);
+}
+
+/// Planes around a common corner, folded by some 40 degrees along one edge and little along the others.
+TopoDS_Shape foldedFan() {
+  constexpr int count = 18;
+  const auto rim = [&](int k) {
+    const int turn = std::abs((k + count / 2) % count - count / 2);
+    const double angle = 2 * std::numbers::pi * k / count, height = 0.9 * std::pow(1 - turn / 9., 2);
+    return gp_Pnt(std::cos(angle), std::sin(angle), height);
+  };
+  BRepBuilderAPI_Sewing sewing;
+  for (int k = 0; k < count; ++k) {
+    BRepBuilderAPI_MakePolygon triangle(gp_Pnt(0, 0, 0), rim(k), rim((k + 1) % count), true);
+    sewing.Add(BRepBuilderAPI_MakeFace(triangle.Wire()).Face());
+  }
+  sewing.Perform();
+  return sewing.SewedShape();
+}
+
+TEST(AlignedEdges, sharpEdgesThatSeparateNothingAreAligned) {
+  for (const auto sharp : {Sharp::Trim, Sharp::Align, Sharp::Ignore}) {
+    const Model model = tessellated(foldedFan(), {.sharp = sharp}, 0.1);
+    ASSERT_EQ(model.regions.size(), 1u);
+    EXPECT_NEAR(alignedLength(model.regions[0]), sharp == Sharp::Ignore ? 0 : std::hypot(1, 0.9), 1e-6);
+  }
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 // The mesh headers come first: OpenCASCADE's macros break them.
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
-#include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
@@ -15,11 +14,9 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
-#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRep_Builder.hxx>
-#include <GC_MakeArcOfCircle.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -244,30 +241,6 @@ TEST(Tessellate, trianglesDoNotReachAcrossARoundingSmallerThanThemselves) {
       const double inside = std::min({c.x(), 2 - c.x(), c.y(), 2 - c.y(), c.z(), 1 - c.z()});
       EXPECT_LT(inside, 2 * radius);
     }
-}
-
-/// Two parallel plates, rounded into each other in two quarters.
-TopoDS_Shape hairpin(double radius) {
-  const auto arc = [&](double y) {
-    const double c = radius * std::sqrt(0.5);
-    return BRepBuilderAPI_MakeEdge(
-               GC_MakeArcOfCircle(gp_Pnt(0, y, 0), gp_Pnt(-c, y < 0 ? -c : c, 0), gp_Pnt(-radius, 0, 0))
-                   .Value())
-        .Edge();
-  };
-  BRepBuilderAPI_MakeWire wire;
-  wire.Add(BRepBuilderAPI_MakeEdge(gp_Pnt(3, -radius, 0), gp_Pnt(0, -radius, 0)).Edge());
-  wire.Add(arc(-radius));
-  wire.Add(arc(radius));
-  wire.Add(BRepBuilderAPI_MakeEdge(gp_Pnt(0, radius, 0), gp_Pnt(3, radius, 0)).Edge());
-  return BRepPrimAPI_MakePrism(wire.Wire(), gp_Vec(0, 0, 2)).Shape();
-}
-
-TEST(Tessellate, aLipNarrowerThanTheTrianglesIsSharp) {
-  const Model narrow = tessellated(hairpin(0.02), 0.3, 0.01), wide = tessellated(hairpin(0.5), 0.3, 0.01);
-  expectValid(narrow);
-  EXPECT_EQ(narrow.regions.size(), 2u);
-  EXPECT_EQ(wide.regions.size(), 1u);
 }
 
 TEST(Tessellate, facesThatOnlyTouchAreSewn) {

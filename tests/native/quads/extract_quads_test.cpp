@@ -222,7 +222,7 @@ TEST(ExtractQuads, aTubeUnderAQuadWideIsRefused) {
     extractQuads(map, {}, progress);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), Error::Kind::Stage);
+    EXPECT_EQ(e.kind(), Error::Kind::Coarse);
     EXPECT_NE(std::string(e.what()).find("shorter edge length"), std::string::npos);
   }
 }
