@@ -151,7 +151,7 @@ def test_a_result_gives_its_field_and_its_map(converted, name):
 
 
 REGION_KEYS = {"name", "status", "error", "mesh", "features", "singularities", "seamless", "tmesh", "quantization", "embedding",
-               "gridmap", "quads", "nurbs", "seconds"}
+               "gridmap", "quads", "histograms", "nurbs", "seconds"}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
