@@ -272,7 +272,10 @@ def _fit(item, tolerance, result, progress):
 
 
 def _map_region(item, index, result, progress):
-    """The stages of one region in their order; the first Error ends it and is kept in the region."""
+    """The stages of one region in their order, as far as what is to be written needs them.
+
+    The first Error ends it and is kept in the region.
+    """
     native = load()
     options = result.options
 
@@ -285,14 +288,19 @@ def _map_region(item, index, result, progress):
                 item.seconds[stage] = time.monotonic() - started
 
     try:
-        seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.edge_length)
+        seed = run("seamless", native.seed, item.region, str(options.field), item.guidance,
+                   options.field_weight, options.edge_length)
         item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
         item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
-        item.tmesh = run("partition", native.partition, item.seamless)
-        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
-        _grid_map(item, index, result, run)
-        item.quads = run("extract", native.extract_quads, item.grid, item.mapped_region)
-        if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
+        if options.wants("partition"):
+            item.tmesh = run("partition", native.partition, item.seamless)
+        if options.wants("quantize"):
+            item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
+        if options.wants("optimize"):
+            _grid_map(item, index, result, run)
+        if options.wants("extract"):
+            item.quads = run("extract", native.extract_quads, item.grid, item.mapped_region)
+        if options.wants("fit"):
             item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
     except Error as error:
         if error.kind == "cancelled":

@@ -14,8 +14,9 @@ namespace {
 /// them; 4 is an isometry.
 constexpr double kLittleDistortion = 4.5;
 
-/// How far the guidance reaches; see crossField.
-constexpr double kCurvatureReach = 4, kGivenReach = 40;
+/// How far the guidance reaches at full weight; see crossField.
+constexpr double kReach = 40;
+constexpr double kCurvatureWeight = 0.1, kGivenWeight = 1;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -63,20 +64,25 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   const FieldGuidance guidance = guidanceFor(region, options, progress);
   result.fieldSeconds = secondsSince(start);
 
+  const bool given = options.follow == SeedOptions::Follow::Given;
+  const double weight = options.weight.value_or(given ? kGivenWeight : kCurvatureWeight);
+  std::vector<double> reaches{kReach * weight};
+  while (reaches.back() > 1) reaches.push_back(reaches.back() / 4);
+  if (options.follow != SeedOptions::Follow::Smooth && reaches.back() > 0) reaches.push_back(0);
+
   // Maps without singularities are worth some distortion, and are the last resort where all others fail.
-  const bool mayDoWithout = options.follow != SeedOptions::Follow::Given && region.aligned.empty() &&
+  const bool mayDoWithout = !(given && weight > kCurvatureWeight) && region.aligned.empty() &&
                             region.featurePoints.empty() && admitsNoSingularity(region.mesh);
-  const auto withoutSingularities = [&] { return singularityFreeField(region.mesh, guidance, progress); };
+  const auto withoutSingularities = [&] {
+    return singularityFreeField(region.mesh, guidance, reaches.front(), progress);
+  };
   std::optional<Seed> without;
-  if (mayDoWithout &&
+  if (mayDoWithout && weight <= kCurvatureWeight &&
       !tryField(region, options.edgeLength, withoutSingularities, Effort::Easy, progress, result)) {
     if (result.map.counters.distortionEnd <= kLittleDistortion) return result;
     without = result;
   }
 
-  std::vector<double> reaches{options.follow == SeedOptions::Follow::Given ? kGivenReach : kCurvatureReach};
-  while (reaches.back() > 1) reaches.push_back(reaches.back() / 4);
-  if (options.follow != SeedOptions::Follow::Smooth) reaches.push_back(0);
   std::optional<Error> first;
   for (const double reach : reaches) {
     const auto field = [&] { return crossField(region, guidance, reach, progress); };
