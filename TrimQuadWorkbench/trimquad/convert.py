@@ -180,6 +180,8 @@ def _cad_model(source, shape, options, native_progress):
     )
     result = Result(source, options, model)
     result.shape_counts = {"faces": shape.faces, "edges": shape.edges}
+    if model.kept_apart:
+        result.warnings.append("the loose faces make up no surface when they are joined along their edges; they stay apart")
     return result
 
 
