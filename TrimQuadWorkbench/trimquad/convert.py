@@ -183,6 +183,8 @@ def _cad_model(source, shape, options, native_progress):
     )
     result = Result(source, options, model)
     result.shape_counts = {"faces": shape.faces, "edges": shape.edges}
+    if model.kept_apart:
+        result.warnings.append("the loose faces make up no surface when they are joined along their edges; they stay apart")
     return result
 
 
@@ -309,7 +311,7 @@ def _map_region(item, index, result, progress):
 
 
 def _try_region(item, index, result, progress):
-    """The stages of one region in their order."""
+    """The stages of one region in their order, as far as what is to be written needs them."""
     native = load()
     options = result.options
 
@@ -321,14 +323,19 @@ def _try_region(item, index, result, progress):
             finally:
                 item.seconds[stage] = time.monotonic() - started
 
-    seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, item.edge_length)
+    seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.field_weight,
+               item.edge_length)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
-    item.tmesh = run("partition", native.partition, item.seamless)
-    item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
-    _grid_map(item, index, result, run)
-    item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
-    if "nurbs" in options.write or "fcstd" in options.write or "pictures" in options.write:
+    if options.wants("partition"):
+        item.tmesh = run("partition", native.partition, item.seamless)
+    if options.wants("quantize"):
+        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
+    if options.wants("optimize"):
+        _grid_map(item, index, result, run)
+    if options.wants("extract"):
+        item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
+    if options.wants("fit"):
         item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
 
 

@@ -8,6 +8,11 @@ from .error import input_error
 
 FILE_KINDS = ("seamless", "tmesh", "gridmap", "quads", "nurbs", "texture", "report", "fcstd", "pictures")
 FIELDS = ("smooth", "curvature", "stress")
+# The last stage that each kind of file needs. Reports and pictures are of what the other files need; alone, a report is
+# of the quads, pictures are of everything.
+LAST_STAGE = {"seamless": "seamless", "tmesh": "quantize", "gridmap": "optimize", "texture": "optimize", "quads": "extract",
+              "nurbs": "fit", "fcstd": "fit"}
+STAGES = ("seamless", "partition", "quantize", "optimize", "extract", "fit")
 DEFAULT_QUADS = 1000
 MOST_QUADS = 2_000_000
 
@@ -22,6 +27,7 @@ class Options:
     align, free      names of edges: 'Edge3' of CAD; 'loop:2', 'loop:2/1', 'feature:0', 'angle:30-90' of meshes
     feature_points   names of CAD vertices, or points: 'Vertex5', '1.5,2,0', (1.5, 2, 0), or '1.5', '2', '0' in a row
     field            'curvature', 'smooth', or the path of a file of directions
+    field_weight     how closely the field follows it, 0 to 1; None: 0.1 for 'curvature', 1 for a file
     """
 
     edge_length: Optional[float] = None
@@ -33,6 +39,7 @@ class Options:
     feature_angle: float = 30.0
     feature_points: List[str] = dataclasses.field(default_factory=list)
     field: str = "curvature"
+    field_weight: Optional[float] = None
     fill_holes: float = 0.0
     optimal: bool = False
     tolerance: Optional[float] = None
@@ -81,6 +88,11 @@ class Options:
         self.feature_vertices_and_points()
         if not (isinstance(self.field, (str, os.PathLike)) and os.fspath(self.field)):
             raise _refused("field", f"must be one of {', '.join(FIELDS)} or a file, not {self.field}")
+        if self.field_weight is not None:
+            if not (_is_number(self.field_weight) and 0 <= self.field_weight <= 1):
+                raise _refused("field_weight", f"must be between 0, smooth, and 1, aligned, not {self.field_weight}")
+            if self.field == "smooth":
+                raise _refused("field_weight", "says how closely to follow curvature or a file; --field smooth follows neither")
         if not self.write:
             raise _refused("write", f"needs at least one of {', '.join(FILE_KINDS)}")
         self._refuse_missing_stages()
@@ -92,6 +104,16 @@ class Options:
         ):
             if given:
                 raise input_error("options", f"{what} is not in this version yet; leave it out")
+
+    @property
+    def last_stage(self):
+        """The last of STAGES that what is to be written needs; no later one is run."""
+        alone = "fit" if "pictures" in self.write else "extract"
+        return max((LAST_STAGE[kind] for kind in self.write if kind in LAST_STAGE), key=STAGES.index, default=alone)
+
+    def wants(self, stage):
+        """Whether a conversion goes as far as `stage`, one of STAGES."""
+        return STAGES.index(stage) <= STAGES.index(self.last_stage)
 
     def feature_vertices_and_points(self):
         """`feature_points` as (names of vertices, [(x, y, z)]). Raises Error(input)."""

@@ -39,7 +39,7 @@ double edgeLengthOf(const Region& region) {
 }
 
 CrossField fieldOf(const Region& region) {
-  return singularityFreeField(region.mesh, curvatureGuidance(region, Progress()), Progress());
+  return singularityFreeField(region.mesh, curvatureGuidance(region, Progress()), 4, Progress());
 }
 
 void field(benchmark::State& state) {

@@ -199,6 +199,7 @@ void bindMesh(py::module_& m) {
             return regions;
           })
       .def_readonly("diagonal", &Model::diagonal)
+      .def_readonly("kept_apart", &Model::keptApart)
       .def_property_readonly("curves", &curvesOf, "the list `curves` of report.json");
   py::class_<FeatureOptions>(m, "FeatureOptions")
       .def(py::init([](const std::string& features, double angle, bool alignBoundary,

@@ -39,17 +39,19 @@ void bindSeamless(py::module_& m) {
   m.def(
       "seed",
       [](const Region& region, const std::string& follow, std::optional<FieldGuidance> guidance,
-         double edgeLength, const Progress& progress) {
+         std::optional<double> weight, double edgeLength, const Progress& progress) {
         SeedOptions options;
         options.follow = guidance             ? SeedOptions::Follow::Given
                          : follow == "smooth" ? SeedOptions::Follow::Smooth
                                               : SeedOptions::Follow::Curvature;
         options.guidance = std::move(guidance);
+        options.weight = weight;
         options.edgeLength = edgeLength;
         return seed(region, options, progress);
       },
-      py::arg("region"), py::arg("follow"), py::arg("guidance"), py::arg("edge_length"), py::arg("progress"),
-      Released(), "follow: 'curvature' or 'smooth', where there is no `guidance`");
+      py::arg("region"), py::arg("follow"), py::arg("guidance"), py::arg("weight"), py::arg("edge_length"),
+      py::arg("progress"), Released(),
+      "follow: 'curvature' or 'smooth', where there is no `guidance`; weight: how closely, 0 to 1, or None");
 }
 
 }  // namespace trimquad

@@ -7,8 +7,8 @@ QUADS = 150
 
 
 def mapped(name, mesh, options, table):
-    """Convert as far as the seamless map; adds a row to the table. Returns the Result."""
-    result = trimquad.convert(mesh, trimquad.Options(quads=QUADS, write=["seamless", "report"], **options))
+    """Convert to quads; adds a row on the seamless map to the table. Returns the Result."""
+    result = trimquad.convert(mesh, trimquad.Options(quads=QUADS, write=["seamless", "quads"], **options))
     for index, item in enumerate(result.regions):
         label = name if len(result.regions) == 1 else f"{name} {index}"
         table((label, item.region.triangles, len(item.singularities), len(item.region.aligned),

@@ -128,6 +128,22 @@ def test_a_region_that_fails_does_not_stop_the_others(tmp_path, capsys):
     assert names == {"gridmap-0.obj", "gridmap-1.obj", "quads-0.obj", "quads-1.obj", "nurbs.step", "nurbs.brep", "report.json"}
 
 
+@pytest.mark.parametrize("kinds, last", [
+    (["seamless", "report"], "seamless"), (["seamless", "pictures"], "seamless"), (["tmesh"], "quantize"),
+    (["gridmap"], "optimize"), (["quads", "pictures"], "extract"), (["report"], "extract"),
+])
+def test_stages_that_nothing_written_needs_are_not_run(sheet, tmp_path, kinds, last):
+    result = trimquad.convert(sheet, trimquad.Options(quads=50, write=kinds))
+    item = result.regions[0]
+    stages = {"seamless": item.seamless, "quantize": item.quantization, "optimize": item.grid, "extract": item.quads,
+              "fit": item.fitted}
+    reached = list(stages)[: list(stages).index(last) + 1]
+    assert [name for name, value in stages.items() if value is not None] == reached
+    names = result.write(str(tmp_path))
+    if "pictures" in kinds:
+        assert "map.png" in names and "nurbs.png" not in names
+
+
 def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
     import FreeCAD
 

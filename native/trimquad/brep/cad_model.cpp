@@ -17,9 +17,6 @@
 namespace trimquad {
 namespace {
 
-/// Gaps up to this share of the diagonal are closed by sewing.
-constexpr double kSewingTolerance = 1e-5;
-
 TopTools_IndexedMapOfShape elements(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
   TopTools_IndexedMapOfShape map;
   TopExp::MapShapes(shape, kind, map);
@@ -88,8 +85,8 @@ Traced copied(const TopoDS_Shape& shape, const TopoDS_Shape& numbering) {
   return result;
 }
 
-Traced sewn(const Traced& apart, double diagonal) {
-  BRepBuilderAPI_Sewing sewing(kSewingTolerance * diagonal);
+Traced sewn(const Traced& apart, double tolerance) {
+  BRepBuilderAPI_Sewing sewing(tolerance);
   sewing.Add(apart.shape);
   sewing.Perform();
   Traced result{sewing.SewedShape(), {}, {}, {}};
@@ -178,11 +175,12 @@ void collectEdges(const Traced& traced, CadModel& model) {
 
 }  // namespace
 
-CadModel cadModel(const Shape& shape) {
+CadModel cadModel(const Shape& shape, double gap) {
   Traced traced = copied(shape.topology(), shape.numbering());
-  if (shape.solidCount() == 0 && shape.faceCount() > 1 && connectedGroups(traced.shape) > 1)
-    traced = sewn(traced, shape.diagonal());
   CadModel model;
+  model.sewn =
+      gap > 0 && shape.solidCount() == 0 && shape.faceCount() > 1 && connectedGroups(traced.shape) > 1;
+  if (model.sewn) traced = sewn(traced, gap * shape.diagonal());
   model.shape = traced.shape;
   collectFaces(traced, model);
   collectEdges(traced, model);

@@ -34,6 +34,7 @@ struct CadModel {
   std::vector<CadFace> faces;
   std::vector<CadEdge> edges;
   std::vector<Eigen::Vector3d> vertices;
+  bool sewn = false;
   TopTools_IndexedMapOfShape edgeNumbers;  ///< from 1
   /// By the number in a name ("Edge3" is at 2): what became of it here. Sewing makes one edge of two, and
   /// several of one.
@@ -43,8 +44,9 @@ struct CadModel {
 };
 
 /// Faces that touch along edges without sharing them, as in many IGES files, are sewn first (unless they
-/// belong to a solid). Throws Error(Input, "tessellate") for edges without vertices and faces without a
+/// belong to a solid), where they are no further apart than `gap` times the shape's diagonal; 0 leaves them
+/// apart. Throws Error(Input, "tessellate") for edges without vertices and faces without a
 /// surface.
-CadModel cadModel(const Shape& shape);
+CadModel cadModel(const Shape& shape, double gap);
 
 }  // namespace trimquad

@@ -24,6 +24,8 @@ namespace {
 /// BRepMesh's triangles only tell where to start on the true surface, so they may be coarser than the
 /// tolerance; the bounds are shares of the diagonal.
 constexpr double kFinestDeflection = 2e-5, kCoarsestDeflection = 2e-4;
+/// Gaps that sewing closes, shares of the diagonal.
+constexpr double kSewnGap = 1e-5, kNarrowGap = 1e-7;
 constexpr std::array<double, 3> kDeflectionSteps{1, 5, 25};
 
 void demandPositive(double value, const char* option) {
@@ -31,8 +33,7 @@ void demandPositive(double value, const char* option) {
     throw inputError("tessellate", std::string(option) + " must be a positive number");
 }
 
-CutModel cutIntoRegions(const Shape& shape, double deflection, const TessellateOptions& options) {
-  const CadModel cad = cadModel(shape);
+CutModel cutIntoRegions(const CadModel& cad, double deflection, const TessellateOptions& options) {
   WeldedMesh mesh = weldedMesh(cad, deflection);
   const auto reversed = orientFaces(cad, mesh);
   auto uses = sideUses(cad, mesh);
@@ -46,17 +47,27 @@ CutModel cutIntoRegions(const Shape& shape, double deflection, const TessellateO
 /// BRepMesh cannot triangulate some faces at one deflection that it can at another. Since the true surface is
 /// reached by Newton's method from any of them, coarser ones are tried before the complaint about the finest
 /// is passed on.
+/// Loose faces that sewing joins to something that is no surface are sewn across narrower gaps, then left
+/// apart.
 CutModel regionsOf(const Shape& shape, double deflection, const TessellateOptions& options,
                    const Progress& progress) {
   std::optional<Error> complaint;
-  for (const double coarser : kDeflectionSteps) {
-    progress.check();
-    try {
-      return cutIntoRegions(shape, coarser * deflection, options);
-    } catch (const Error& error) {
-      if (error.kind() != Error::Kind::Input || error.stage() == "options") throw;
-      if (!complaint) complaint = error;
+  for (const double gap : {kSewnGap, kNarrowGap, 0.0}) {
+    bool sewn = false;
+    for (const double coarser : kDeflectionSteps) {
+      progress.check();
+      const CadModel cad = cadModel(shape, gap);  // anew: its triangulation is kept with it
+      sewn = cad.sewn;
+      try {
+        CutModel cut = cutIntoRegions(cad, coarser * deflection, options);
+        cut.model.keptApart = gap == 0;
+        return cut;
+      } catch (const Error& error) {
+        if (error.kind() != Error::Kind::Input || error.stage() == "options") throw;
+        if (!complaint) complaint = error;
+      }
     }
+    if (!sewn) break;
   }
   throw Error(*complaint);
 }
@@ -99,6 +110,7 @@ Model tessellate(const Shape& shape, const TessellateOptions& options, const Pro
       remesh(cut.model.regions[r], cut.model, division, cut.creases[r], wanted, progress);
     markConstraints(cut, curvePoints);
     Model model = joinRegions(cut.model, cut.inner, cut.surfaces);
+    model.keptApart = cut.model.keptApart;
     for (auto& region : model.regions) splitConstrainedTriangles(region);
     return model;
   });

@@ -18,6 +18,9 @@ struct TessellateOptions {
 /// separate; these stay chains of mesh edges. Feature points are vertices, and triangles are split as
 /// `splitConstrainedTriangles` says.
 ///
+/// Loose faces that touch are sewn first, but where that makes up no surface (three in one edge, one side
+/// only) all of them stay apart, a region each: Model::keptApart.
+///
 /// Guarantees: regions are oriented manifolds, outward for solids; inner vertices lie on the true surface;
 /// both sides of a common edge have the same vertices; edges and faces are named as FreeCAD counts them. No
 /// triangle has all its vertices on the boundary, where the region allows it. Throws Error(Input,

@@ -115,7 +115,7 @@ bool admitsNoSingularity(const SurfaceMesh& mesh) {
 }
 
 CrossField singularityFreeField(const SurfaceMesh& mesh, const FieldGuidance& directions,
-                                const Progress& progress) {
+                                double guidanceReach, const Progress& progress) {
   const Transport frames = liftedTransport(mesh);
   const LoopTurning turning = loopTurning(mesh, frames);
   progress.report(0.2);
@@ -136,14 +136,12 @@ CrossField singularityFreeField(const SurfaceMesh& mesh, const FieldGuidance& di
   progress.report(0.7);
   const auto [rotation, certainty] = bestRotation(mesh, guidance, angle);
   angle.array() += certainty > 1e-3 ? rotation : rotationAlongBoundary(mesh, frames, angle);
-  constexpr double kGuidanceReach =
-      4;  // the guidance takes over at lengths above 1 / (this) of the region's size
   std::vector<double> weight(mesh.n_faces());
   const double area = surfaceArea(mesh);
   double totalWeight = 0;
   for (const auto f : mesh.faces()) {
     weight[f.idx()] =
-        kGuidanceReach * kGuidanceReach * mesh.calc_face_area(f) / area * guidance.weight[f.idx()];
+        guidanceReach * guidanceReach * mesh.calc_face_area(f) / area * guidance.weight[f.idx()];
     totalWeight += weight[f.idx()];
   }
   if (certainty > 1e-3 && totalWeight > 0) {

@@ -63,6 +63,8 @@ struct Model {
   };
   std::vector<Shell> shells;
   double diagonal = 0;                        ///< of the bounding box, model units
+  /// Whether loose faces of a CAD shape touch along edges, but make up no surface when joined there.
+  bool keptApart = false;
 };
 
 }  // namespace trimquad

@@ -1,74 +1,140 @@
 #include "trimquad/seamless/hessian_pattern.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
-
-#include "trimquad/base/error.h"
+#include <numeric>
+#include <tuple>
 
 namespace trimquad {
+namespace {
 
-HessianPattern::HessianPattern(const ConstraintBasis& basis, const std::vector<Corners>& triangles) {
-  using RowIterator = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
-  const int n = basis.freeCount(), count = int(triangles.size());
-  std::vector<int> unknown;  // of all triangles, one after another
-  triangles_.resize(count + 1);
-  for (int t = 0; t < count; ++t) {
-    Triangle& triangle = triangles_[t];
-    triangle.firstUnknown = int(unknown.size());
-    triangle.firstCoefficient = int(coefficients_.size());
-    triangle.plain = true;
-    for (int i = 0; i < 6; ++i) {
-      int terms = 0;
-      for (RowIterator r(basis.matrix(), triangles[t][i]); r; ++r, ++terms) {
-        const auto first = unknown.begin() + triangle.firstUnknown;
-        const auto found = std::find(first, unknown.end(), int(r.col()));
-        const int local = int(found - first);
-        if (found == unknown.end()) unknown.push_back(int(r.col()));
-        coefficients_.push_back({i, local, r.value()});
-        triangle.plain = triangle.plain && local == i && r.value() == 1;
-      }
-      triangle.plain = triangle.plain && terms == 1;
+using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Terms = Matrix::InnerIterator;
+
+int termCount(const Matrix& basis, int variable) {
+  return basis.outerIndexPtr()[variable + 1] - basis.outerIndexPtr()[variable];
+}
+
+bool isUnknown(const Matrix& basis, int variable) {
+  return termCount(basis, variable) == 1 && Terms(basis, variable).value() == 1;
+}
+
+/// By variable: the first one that is the same sum.
+std::vector<int> representatives(const Matrix& basis) {
+  const int* const outer = basis.outerIndexPtr();
+  const auto compare = [&](int a, int b) {
+    const int na = termCount(basis, a), nb = termCount(basis, b);
+    if (na != nb) return na < nb ? -1 : 1;
+    for (int k = 0; k < na; ++k) {
+      const int p = outer[a] + k, q = outer[b] + k;
+      const auto x = std::tuple(basis.innerIndexPtr()[p], basis.valuePtr()[p]),
+                 y = std::tuple(basis.innerIndexPtr()[q], basis.valuePtr()[q]);
+      if (x != y) return x < y ? -1 : 1;
     }
-    triangle.unknowns = int(unknown.size()) - triangle.firstUnknown;
-    triangles_[t + 1].firstPlace =
-        triangle.firstPlace + size_t(triangle.unknowns) * size_t(triangle.unknowns);
+    return 0;
+  };
+  std::vector<int> order(basis.rows()), first(basis.rows());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const int c = compare(a, b);
+    return c != 0 ? c < 0 : a < b;
+  });
+  for (size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && compare(order[i], order[i - 1]) == 0 ? first[order[i - 1]] : order[i];
+  return first;
+}
+
+}  // namespace
+
+HessianPattern::HessianPattern(const ConstraintBasis& basis, const std::vector<Corners>& triangles)
+    : basis_(basis.matrix()) {
+  basis_.makeCompressed();
+  findPairs(triangles);
+  findPlaces(triangles);
+}
+
+void HessianPattern::findPairs(const std::vector<Corners>& triangles) {
+  const auto first = representatives(basis_);
+  const auto pairsOf = [&](const Corners& corners, const auto& visit) {
+    for (int k = 0; k < 36; ++k) visit(k, std::array{first[corners[k % 6]], first[corners[k / 6]]});
+  };
+  std::vector<std::array<int, 2>> distinct;
+  for (const auto& corners : triangles) {
+    const bool plain = std::all_of(corners.begin(), corners.end(),
+                                   [&](int variable) { return isUnknown(basis_, variable); });
+    triangles_.push_back({plain, 36 * triangles_.size()});
+    if (!plain) pairsOf(corners, [&](int, const auto& pair) { distinct.push_back(pair); });
   }
-  triangles_[count].firstUnknown = int(unknown.size());
-  triangles_[count].firstCoefficient = int(coefficients_.size());
-  place_.resize(triangles_[count].firstPlace);
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  pairs_.reserve(distinct.size());
+  size_t places = 0;
+  for (const auto& [row, column] : distinct) {
+    pairs_.push_back({row, column, places});
+    places += size_t(termCount(basis_, row)) * size_t(termCount(basis_, column));
+  }
+  place_.resize(places);
+  entry_.resize(36 * triangles.size());
+  for (size_t t = 0; t < triangles.size(); ++t)
+    if (!triangles_[t].plain)
+      pairsOf(triangles[t], [&](int k, const auto& pair) {
+        entry_[36 * t + k] = int(std::lower_bound(distinct.begin(), distinct.end(), pair) - distinct.begin());
+      });
+}
 
-  // The triangles of every unknown, as places in `unknown`.
-  std::vector<int> start(n + 1, 0), use(unknown.size()), triangleOf(unknown.size());
-  for (const int a : unknown) ++start[a + 1];
-  for (int a = 0; a < n; ++a) start[a + 1] += start[a];
-  std::vector<int> next(start.begin(), start.end() - 1);
-  for (int t = 0; t < count; ++t)
-    for (int k = triangles_[t].firstUnknown; k < triangles_[t + 1].firstUnknown; ++k) {
-      triangleOf[k] = t;
-      use[next[unknown[k]]++] = k;
+void HessianPattern::findPlaces(const std::vector<Corners>& triangles) {
+  const int n = int(basis_.cols());
+  const auto unknownOf = [&](int variable) {
+    return basis_.innerIndexPtr()[basis_.outerIndexPtr()[variable]];
+  };
+  // Column by column of the Hessian: corners of plain triangles that are the unknown, and terms of pairs
+  // whose second variable has it.
+  struct Use {
+    int owner, term;
+  };
+  const auto collect = [&](const auto& forEach) {
+    std::vector<int> start(n + 1, 0);
+    forEach([&](int column, Use) { ++start[column + 1]; });
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Use> uses(start.back());
+    std::vector<int> next(start.begin(), start.end() - 1);
+    forEach([&](int column, Use use) { uses[next[column]++] = use; });
+    return std::pair(std::move(start), std::move(uses));
+  };
+  const auto [plainStart, plainUses] = collect([&](const auto& visit) {
+    for (int t = 0; t < int(triangles.size()); ++t)
+      for (int k = 0; triangles_[t].plain && k < 6; ++k) visit(unknownOf(triangles[t][k]), Use{t, k});
+  });
+  const auto [pairStart, pairUses] = collect([&](const auto& visit) {
+    for (int p = 0; p < int(pairs_.size()); ++p) {
+      int term = 0;
+      for (Terms s(basis_, pairs_[p].column); s; ++s, ++term) visit(int(s.col()), Use{p, term});
     }
-
+  });
   std::vector<int> outer{0}, inner, slot(n), seenFrom(n, n), column;
   outer.reserve(n + 1);
   for (int b = 0; b < n; ++b) {
     seenFrom[b] = b;
     column.assign(1, b);  // the diagonal, even where no triangle depends on the unknown
-    for (int u = start[b]; u < start[b + 1]; ++u) {
-      const Triangle& triangle = triangles_[triangleOf[use[u]]];
-      for (int k = 0; k < triangle.unknowns; ++k) {
-        const int a = unknown[triangle.firstUnknown + k];
-        if (seenFrom[a] == b) continue;
-        seenFrom[a] = b;
-        column.push_back(a);
-      }
-    }
+    const auto see = [&](int a) {
+      if (seenFrom[a] == b) return;
+      seenFrom[a] = b;
+      column.push_back(a);
+    };
+    for (int u = plainStart[b]; u < plainStart[b + 1]; ++u)
+      for (const int variable : triangles[plainUses[u].owner]) see(unknownOf(variable));
+    for (int u = pairStart[b]; u < pairStart[b + 1]; ++u)
+      for (Terms r(basis_, pairs_[pairUses[u].owner].row); r; ++r) see(int(r.col()));
     std::sort(column.begin(), column.end());
     for (size_t i = 0; i < column.size(); ++i) slot[column[i]] = int(inner.size() + i);
-    for (int u = start[b]; u < start[b + 1]; ++u) {
-      const Triangle& triangle = triangles_[triangleOf[use[u]]];
-      int* const places = place_.data() + triangle.firstPlace +
-                          size_t(use[u] - triangle.firstUnknown) * size_t(triangle.unknowns);
-      for (int k = 0; k < triangle.unknowns; ++k) places[k] = slot[unknown[triangle.firstUnknown + k]];
+    for (int u = plainStart[b]; u < plainStart[b + 1]; ++u) {
+      const auto& [t, k] = plainUses[u];
+      for (int i = 0; i < 6; ++i)
+        entry_[triangles_[t].first + size_t(6 * k + i)] = slot[unknownOf(triangles[t][i])];
+    }
+    for (int u = pairStart[b]; u < pairStart[b + 1]; ++u) {
+      const Pair& pair = pairs_[pairUses[u].owner];
+      size_t place = pair.firstPlace + size_t(pairUses[u].term) * size_t(termCount(basis_, pair.row));
+      for (Terms r(basis_, pair.row); r; ++r) place_[place++] = slot[r.col()];
     }
     inner.insert(inner.end(), column.begin(), column.end());
     outer.push_back(int(inner.size()));
@@ -78,32 +144,23 @@ HessianPattern::HessianPattern(const ConstraintBasis& basis, const std::vector<C
                                                         inner.data(), zeros.data());
 }
 
-void HessianPattern::add(int t, const Eigen::Matrix<double, 6, 6>& second,
-                         Eigen::SparseMatrix<double>& hessian) const {
+void HessianPattern::add(int t, const Eigen::Matrix<double, 6, 6>& second, Sum& sum) const {
   const Triangle& triangle = triangles_[t];
-  const int* const places = place_.data() + triangle.firstPlace;
-  double* const values = hessian.valuePtr();
-  if (triangle.plain) {
-    for (int i = 0; i < 36; ++i) values[places[i]] += second.data()[i];
-    return;
+  const int* const entries = entry_.data() + triangle.first;
+  double* const values = triangle.plain ? sum.hessian.valuePtr() : sum.byPair.data();
+  for (int i = 0; i < 36; ++i) values[entries[i]] += second.data()[i];
+}
+
+Eigen::SparseMatrix<double> HessianPattern::finish(Sum&& sum) const {
+  double* const values = sum.hessian.valuePtr();
+  for (size_t p = 0; p < pairs_.size(); ++p) {
+    const double second = sum.byPair[p];
+    if (second == 0) continue;
+    size_t place = pairs_[p].firstPlace;
+    for (Terms s(basis_, pairs_[p].column); s; ++s)
+      for (Terms r(basis_, pairs_[p].row); r; ++r) values[place_[place++]] += second * s.value() * r.value();
   }
-  const auto begin = coefficients_.begin() + triangle.firstCoefficient,
-             end = coefficients_.begin() + triangles_[t + 1].firstCoefficient;
-  const auto terms = size_t(end - begin), unknowns = size_t(triangle.unknowns);
-  if (terms * terms > 4 * unknowns * unknowns) {
-    // Long sums of the same unknowns, as along aligned curves: dense, the six variables cost less than their
-    // terms.
-    Eigen::Matrix<double, 6, Eigen::Dynamic> byUnknown =
-        Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, triangle.unknowns);
-    for (auto s = begin; s != end; ++s) byUnknown(s->corner, s->unknown) += s->value;
-    const Eigen::MatrixXd whole = byUnknown.transpose() * (second * byUnknown);
-    for (Eigen::Index i = 0; i < whole.size(); ++i) values[places[i]] += whole.data()[i];
-    return;
-  }
-  for (auto s = begin; s != end; ++s)
-    for (auto r = begin; r != end; ++r)
-      values[places[s->unknown * triangle.unknowns + r->unknown]] +=
-          r->value * s->value * second(r->corner, s->corner);
+  return std::move(sum.hessian);
 }
 
 }  // namespace trimquad

@@ -135,7 +135,7 @@ double MapEnergy::meanSymmetricDirichlet(const Eigen::VectorXd& x) const {
 
 void MapEnergy::addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ,
                             double tangentP, double tangentQ, const Jacobian& j, double follow,
-                            Eigen::VectorXd& gradientX, Eigen::SparseMatrix<double>& hessian) const {
+                            Eigen::VectorXd& gradientX, HessianPattern::Sum& hessian) const {
   const auto& local = local_[face];
   const double p = std::hypot(j.fzReal, j.fzImag), q = std::hypot(j.fzbarReal, j.fzbarImag);
   const Eigen::Vector2d n = p > 0 ? Eigen::Vector2d(j.fzReal / p, j.fzImag / p) : Eigen::Vector2d(1, 0);

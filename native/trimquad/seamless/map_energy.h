@@ -75,7 +75,7 @@ class MapEnergy {
   };
   void addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ, double tangentP,
                    double tangentQ, const Jacobian& j, double follow, Eigen::VectorXd& gradientX,
-                   Eigen::SparseMatrix<double>& hessian) const;
+                   HessianPattern::Sum& hessian) const;
 
   const ConstraintBasis& basis_;
   std::vector<Local> local_;

@@ -20,7 +20,7 @@ template <typename Density>
 void MapEnergy::derivatives(const Eigen::VectorXd& x, const Density& density, double follow,
                             Eigen::VectorXd& gradient, Eigen::SparseMatrix<double>& hessian) const {
   Eigen::VectorXd gradientX = Eigen::VectorXd::Zero(basis_.variableCount());
-  hessian = pattern_.zero();
+  HessianPattern::Sum sum = pattern_.start();
   for (int f = 0; f < int(local_.size()); ++f) {
     const Jacobian j = jacobian(f, x);
     const MapDensity g = density(j.norm2(), j.det());
@@ -31,8 +31,9 @@ void MapEnergy::derivatives(const Eigen::VectorXd& x, const Density& density, do
     const double tangentP = 4 * g.dI + 2 * g.dD, tangentQ = 4 * g.dI - 2 * g.dD;
     addTriangle(f, p * tangentP, q * tangentQ, tangentP + p * p * (16 * g.dId + 4 * g.dDd),
                 tangentQ + q * q * (-16 * g.dId + 4 * g.dDd), -4 * p * q * g.dDd, tangentP, tangentQ, j,
-                follow, gradientX, hessian);
+                follow, gradientX, sum);
   }
+  hessian = pattern_.finish(std::move(sum));
   gradient = basis_.matrix().transpose() * gradientX;
 }
 

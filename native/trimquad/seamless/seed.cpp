@@ -14,8 +14,9 @@ namespace {
 /// them; 4 is an isometry.
 constexpr double kLittleDistortion = 4.5;
 
-/// How far the guidance reaches; see crossField.
-constexpr double kCurvatureReach = 4, kGivenReach = 40;
+/// How far the guidance reaches at full weight; see crossField.
+constexpr double kReach = 40;
+constexpr double kCurvatureWeight = 0.1, kGivenWeight = 1;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -63,10 +64,18 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   const FieldGuidance guidance = guidanceFor(region, options, progress);
   result.fieldSeconds = secondsSince(start);
 
+  const bool given = options.follow == SeedOptions::Follow::Given;
+  const double weight = options.weight.value_or(given ? kGivenWeight : kCurvatureWeight);
+  std::vector<double> reaches{kReach * weight};
+  while (reaches.back() > 1) reaches.push_back(reaches.back() / 4);
+  if (options.follow != SeedOptions::Follow::Smooth && reaches.back() > 0) reaches.push_back(0);
+
   // Maps without singularities are worth some distortion, and are the last resort where all others fail.
-  const bool mayDoWithout = options.follow != SeedOptions::Follow::Given && region.aligned.empty() &&
+  const bool mayDoWithout = !(given && weight > kCurvatureWeight) && region.aligned.empty() &&
                             region.featurePoints.empty() && admitsNoSingularity(region.mesh);
-  const auto withoutSingularities = [&] { return singularityFreeField(region.mesh, guidance, progress); };
+  const auto withoutSingularities = [&] {
+    return singularityFreeField(region.mesh, guidance, reaches.front(), progress);
+  };
   std::optional<Seed> without;
   const auto tryWithout = [&](Effort effort) {
     if (!without && mayDoWithout &&
@@ -74,11 +83,9 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
       without = result;
     return without && without->map.counters.distortionEnd <= kLittleDistortion;
   };
-  if (tryWithout(Effort::Easy)) return *without;
+  const bool prefersWithout = weight <= kCurvatureWeight;
+  if (prefersWithout && tryWithout(Effort::Easy)) return *without;
 
-  std::vector<double> reaches{options.follow == SeedOptions::Follow::Given ? kGivenReach : kCurvatureReach};
-  while (reaches.back() > 1) reaches.push_back(reaches.back() / 4);
-  if (options.follow != SeedOptions::Follow::Smooth) reaches.push_back(0);
   std::optional<Error> first;
   std::optional<Seed> with;
   for (const double reach : reaches) {
@@ -92,7 +99,7 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
     ++result.fieldEdits;
   }
   // Singularities that do not even make the map a better one are no use.
-  const bool little = tryWithout(Effort::Full);
+  const bool little = (prefersWithout || !with) && tryWithout(Effort::Full);
   if (with && !little &&
       (!without || with->map.counters.distortionEnd < without->map.counters.distortionEnd)) {
     with->fieldSeconds = result.fieldSeconds;

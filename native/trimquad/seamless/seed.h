@@ -13,11 +13,14 @@ struct SeedOptions {
   enum class Follow {
     Smooth,     ///< nothing but smoothness and the aligned edges
     Curvature,  ///< the principal directions where they are distinct
-    Given       ///< `guidance`, closely
+    Given       ///< `guidance`
   };
   Follow follow = Follow::Curvature;
   std::optional<FieldGuidance> guidance;  ///< for Follow::Given
-  double edgeLength = 1;                  ///< of a quad, model units
+  /// How closely, from 0, not at all, to 1, down to features of a fortieth of the region's size. Without one:
+  /// 0.1 for the curvature, 1 for what is given.
+  std::optional<double> weight;
+  double edgeLength = 1;  ///< of a quad, model units
 };
 
 /// A field and the seamless map that follows it: what the rest of the pipeline starts from. (The input of the
@@ -29,10 +32,11 @@ struct Seed {
   double fieldSeconds = 0, seamlessSeconds = 0;
 };
 
-/// A map without singularities where the region has one of little distortion, or of less than with them; else
-/// the map of the smoothest field. Where a field has no locally injective map, smoother ones with fewer
-/// singularities are tried, down to one that follows nothing but the aligned edges. Throws Error(Stage) of
-/// the first field where none has a map.
+/// A map without singularities where the region has one of little distortion, or of less than with them, and
+/// nothing is to be followed more closely than is usual for the curvature; else the map of the smoothest
+/// field. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
+/// to one that follows nothing but the aligned edges. Throws Error(Stage) of the first field where none has a
+/// map.
 Seed seed(const Region& region, const SeedOptions& options, const Progress& progress);
 
 }  // namespace trimquad

@@ -105,6 +105,35 @@ void expectValid(const Model& model) {
   }
 }
 
+/// Loose faces, from the corners of each.
+TopoDS_Compound looseFaces(const std::vector<std::vector<gp_Pnt>>& faces) {
+  TopoDS_Compound compound;
+  BRep_Builder builder;
+  builder.MakeCompound(compound);
+  for (const auto& corners : faces) {
+    BRepBuilderAPI_MakePolygon polygon;
+    for (const auto& p : corners) polygon.Add(p);
+    polygon.Close();
+    builder.Add(compound, BRepBuilderAPI_MakeFace(polygon.Wire()).Face());
+  }
+  return compound;
+}
+
+TEST(Tessellate, looseFacesThatMakeUpNoSurfaceStayApart) {
+  const gp_Pnt a(0, 0, 0), b(1, 0, 0);
+  const Model joined =
+      tessellated(looseFaces({{a, b, {1, 1, 0}, {0, 1, 0}}, {b, a, {0, -1, 0}, {1, -1, 0}}}), 0.2);
+  EXPECT_FALSE(joined.keptApart);
+  EXPECT_EQ(joined.regions.size(), 1);
+  // Five triangles around a Moebius strip.
+  const std::array<gp_Pnt, 5> p{a, b, gp_Pnt(0, 1, 0), gp_Pnt(0, 0, 1), gp_Pnt(1, 1, 1)};
+  std::vector<std::vector<gp_Pnt>> strip;
+  for (int i = 0; i < 5; ++i) strip.push_back({p[i], p[(i + 1) % 5], p[(i + 2) % 5]});
+  const Model apart = tessellated(looseFaces(strip), 0.2);
+  EXPECT_TRUE(apart.keptApart);
+  EXPECT_EQ(apart.regions.size(), 5);
+}
+
 TEST(Tessellate, boxHasSixRegionsAndTwelveSharedCurves) {
   const Model model = tessellated(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), 0.3);
   expectValid(model);

@@ -12,7 +12,7 @@ namespace trimquad {
 namespace {
 
 CrossField fieldOf(const Region& r) {
-  return singularityFreeField(r.mesh, curvatureGuidance(r, Progress()), Progress());
+  return singularityFreeField(r.mesh, curvatureGuidance(r, Progress()), 4, Progress());
 }
 
 std::vector<int> sortedTurns(const CrossField& field) {

@@ -15,7 +15,7 @@ namespace trimquad {
 namespace {
 
 CrossField fieldOf(const Region& r) {
-  return singularityFreeField(r.mesh, curvatureGuidance(r, Progress()), Progress());
+  return singularityFreeField(r.mesh, curvatureGuidance(r, Progress()), 4, Progress());
 }
 
 GridMap mapOf(const Region& r, double edgeLength) {

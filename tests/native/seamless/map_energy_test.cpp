@@ -38,17 +38,18 @@ TEST(HessianPattern, gathersWhatTheBasisMatrixGives) {
     const Problem problem(seed);
     const HessianPattern pattern(problem.basis, problem.triangles);
     std::srand(seed);
-    Eigen::SparseMatrix<double> hessian = pattern.zero();
+    HessianPattern::Sum sum = pattern.start();
     const int variables = problem.basis.variableCount();
     Eigen::MatrixXd byVariables = Eigen::MatrixXd::Zero(variables, variables);
     for (size_t t = 0; t < problem.triangles.size(); ++t) {
       const Eigen::Matrix<double, 6, 6> half = Eigen::Matrix<double, 6, 6>::Random();
       const Eigen::Matrix<double, 6, 6> second = half + half.transpose();
-      pattern.add(int(t), second, hessian);
+      pattern.add(int(t), second, sum);
       for (int i = 0; i < 6; ++i)
         for (int k = 0; k < 6; ++k)
           byVariables(problem.triangles[t][i], problem.triangles[t][k]) += second(i, k);
     }
+    const Eigen::SparseMatrix<double> hessian = pattern.finish(std::move(sum));
     const Eigen::MatrixXd matrix(problem.basis.matrix());
     const Eigen::MatrixXd expected = matrix.transpose() * byVariables * matrix;
     ASSERT_EQ(hessian.rows(), expected.rows());

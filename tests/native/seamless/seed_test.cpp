@@ -250,6 +250,37 @@ TEST(Seed, smoothFieldsIgnoreCurvature) {
   check(r, seed(r, options, Progress()));
 }
 
+TEST(Seed, theWeightBlendsBetweenSmoothAndAligned) {
+  const Region r = sample::region(sample::sheet(30, 30, sample::wavy));
+  const FieldGuidance guidance = curvatureGuidance(r, Progress());
+  // Mean angle off the principal directions, where they are distinct.
+  const auto off = [&](SeedOptions::Follow follow, std::optional<double> weight) {
+    SeedOptions options;
+    options.follow = follow;
+    options.guidance = guidance;
+    options.weight = weight;
+    options.edgeLength = 0.1;
+    const Seed s = seed(r, options, Progress());
+    check(r, s);
+    double sum = 0, total = 0;
+    for (const auto f : r.mesh.faces()) {
+      const double dot = std::abs(s.field.direction[f.idx()].dot(guidance.direction[f.idx()].normalized()));
+      const double w = guidance.weight[f.idx()];
+      sum += w * std::acos(std::min(1.0, std::max(dot, std::sqrt(std::max(0.0, 1 - dot * dot)))));
+      total += w;
+    }
+    return sum / total;
+  };
+  using enum SeedOptions::Follow;
+  const double faint = off(Curvature, 0.01), close = off(Curvature, 0.4), closest = off(Curvature, 1.0);
+  EXPECT_LT(close, 0.9 * faint);
+  EXPECT_LT(closest, close);
+  EXPECT_EQ(off(Curvature, std::nullopt), off(Curvature, 0.1));
+  EXPECT_EQ(off(Given, std::nullopt), closest);
+  EXPECT_EQ(off(Given, 0.1), off(Curvature, 0.1));
+  EXPECT_EQ(off(Curvature, 0.0), off(Given, 0.0));
+}
+
 TEST(Seed, roughRandomSurfacesGetAnExactMapOrAnHonestError) {
   int failed = 0, all = 0;
   for (unsigned number = 0; number < sample::rounds(300); ++number) {
