@@ -11,9 +11,6 @@ namespace trimquad {
 /// rounding then.
 inline constexpr double kFootStep = 1e-6;
 
-/// Part of the samples at which the surface may be turned over while parameters are still corrected.
-inline constexpr double kFewTurned = 0.05;
-
 /// How far a region's samples lie from a surface.
 struct Deviation {
   double max = 0, rms = 0;
@@ -23,8 +20,7 @@ struct Deviation {
 };
 
 /// \param turnedOver by sample
-template <class Sample>
-Deviation deviationOf(const std::vector<Sample>& samples, const std::vector<char>& turnedOver) {
+inline Deviation deviationOf(const std::vector<SurfaceSample>& samples, const std::vector<char>& turnedOver) {
   Deviation result;
   double sum = 0;
   for (int i = 0; i < int(samples.size()); ++i) {

@@ -74,12 +74,6 @@ std::vector<double> breaksAlong(const SplineSpace& space, const Layout::Border& 
 
 }  // namespace
 
-int JoinedSpace::poles() const {
-  int sum = 0;
-  for (const auto& chart : charts) sum += chart.poles();
-  return sum;
-}
-
 std::vector<int> JoinedSpace::offsets() const {
   std::vector<int> result{0};
   for (const auto& chart : charts) result.push_back(result.back() + chart.poles());

@@ -22,7 +22,6 @@ class JoinedSpace {
   /// quad^2 of surface.
   double tangentWeight = 3;
 
-  int poles() const;
   /// By chart of the layout: its corners in singularities.
   std::vector<std::vector<Eigen::Vector2d>> singularCorners() const;
 

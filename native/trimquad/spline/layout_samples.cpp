@@ -132,10 +132,10 @@ void LayoutSamples::forEachChart(FaceHandle f, const Visit& visit) const {
       visit(piece->chart, piece->toChart);
 }
 
-LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycentric) const {
+SurfaceSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycentric) const {
   const auto& mesh = map_.mesh;
   const Eigen::Vector2d x = at(f, barycentric);
-  LayoutSample s;
+  SurfaceSample s;
   s.point.setZero();
   std::array<Eigen::Vector3d, 3> p;
   HalfedgeHandle h = mesh.halfedge_handle(f);
@@ -164,11 +164,11 @@ LayoutSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycent
   return s;
 }
 
-std::vector<LayoutSample> LayoutSamples::make(const JoinedSpace& space, bool control,
-                                              const Progress& progress) {
+std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool control,
+                                               const Progress& progress) {
   const auto& mesh = map_.mesh;
   const int across = kSamplesAcrossSpan + (control ? 1 : 0);
-  std::vector<LayoutSample> samples;
+  std::vector<SurfaceSample> samples;
   cells_.clear();
   if (!control) {
     samples.resize(mesh.n_vertices());

@@ -9,11 +9,6 @@
 
 namespace trimquad {
 
-/// A sample of a region and the chart of the layout that its parameter belongs to.
-struct LayoutSample : SurfaceSample {
-  int chart = 0;
-};
-
 /// Samples of a region that is cut into charts, dense enough for a spline space everywhere, on the true
 /// surface where there is one. Parameters are those of the grid map, but next to singularities, where the map
 /// grows like a power of the distance, which no spline with a tangent plane can follow: there they are moved
@@ -24,7 +19,7 @@ class LayoutSamples {
 
   /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary. `control` samples lie at
   /// other places and are denser.
-  std::vector<LayoutSample> make(const JoinedSpace& space, bool control, const Progress& progress);
+  std::vector<SurfaceSample> make(const JoinedSpace& space, bool control, const Progress& progress);
   /// Of the samples made last: small triangles between samples of one chart, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
 
@@ -38,7 +33,7 @@ class LayoutSamples {
   double areaOf(FaceHandle f) const;
   template <class Visit>
   void forEachChart(FaceHandle f, const Visit& visit) const;
-  LayoutSample sample(FaceHandle f, const Eigen::Vector3d& barycentric) const;
+  SurfaceSample sample(FaceHandle f, const Eigen::Vector3d& barycentric) const;
   void collectSingularCorners();
   bool isNearSingularity(int chart, const Corners& triangle, const SplineSpace& space) const;
   Eigen::Vector2d regularised(int chart, const Eigen::Vector2d& x) const;

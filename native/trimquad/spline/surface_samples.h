@@ -15,6 +15,7 @@ struct SurfaceSample {
   Eigen::Vector3d point, normal;
   Eigen::Vector3d
       meshNormal;             ///< of the triangles: differs where the surface bends more closely than they do
+  int chart = 0;              ///< of the layout, where there are several
   Eigen::Vector2d parameter;  ///< quads; in a closed direction within one period of the seam
   double weight = 0;          ///< area of the chart that it stands for, quads^2
   double distance = 0;        ///< from the surface, along its normal: signed, model units

@@ -1,0 +1,287 @@
+#include "trimquad/spline/fit_rounds.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "trimquad/base/parallel.h"
+
+namespace trimquad {
+namespace {
+
+/// Rounds of parameter correction on the same knots, and the part of the deviation that one has to leave at
+/// most for another to be worth it.
+constexpr int kMaxCorrections = 4;
+constexpr double kCorrectionPays = 0.85;
+/// Multiple of the tolerance below which parameters are corrected, unless knots alone do not help: feet on a
+/// surface that is still far from the region would bring its waves into the parameters.
+constexpr double kCorrectionStarts = 20;
+/// Part of the deviation with the chart's parameters that the one with corrected parameters must stay under
+/// to be kept.
+constexpr double kCorrectedWins = 0.7;
+/// How much more the samples that deviate most weigh in the next round, to even out the largest deviations.
+constexpr double kEmphasis = 10;
+/// Only where the deviation is above this part of the largest one are knots inserted: it reaches a few spans
+/// beyond its cause, where it goes away by itself. Along a crease it does not, and all that fail are refined.
+constexpr double kWorstPart = 0.3;
+/// Refinements in a row that may bring less than a fifth.
+constexpr int kPatience = 4;
+/// Part of the samples at which the surface may be turned over while parameters are still corrected.
+constexpr double kFewTurned = 0.05;
+
+std::string shortNumber(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+}  // namespace
+
+FitRounds::FitRounds(const Region& region, const FitOptions& options, const Policy& policy,
+                     const Progress& progress)
+    : region_(region),
+      tolerance_(options.tolerance),
+      enough_(std::max(options.tolerance, options.enough)),
+      threads_(options.threads),
+      progress_(progress),
+      policy_(policy) {}
+
+void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
+  const double quad = std::sqrt(surfaceArea / mapArea);
+  const double inQuads = tolerance_ / quad;
+  // With the energy as an integral over the same plane as the squared distance, the deviation that it costs
+  // is below 3 % of the tolerance times the surface's bending per quad.
+  fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
+  fairness_.withoutData = std::max(1e3 * fairness_.withData, 1e-9);
+  narrowest_ = std::exp2(std::floor(std::log2(extent / 16)));
+}
+
+FittedSurface FitRounds::run() try { return rounds(); } catch (const Error& error) {
+  if (!kept_ || error.kind() != Error::Kind::Stage) throw;
+  return std::move(*kept_);
+}
+
+FittedSurface FitRounds::rounds() {
+  takeSamples();
+  for (rounds_ = 1; rounds_ <= policy_.maxRounds; ++rounds_) {
+    if (!solved_) solve();
+    solved_ = false;
+    if (rounds_ == 1) start_ = best_ = deviation_.max;
+    best_ = std::min(best_, deviation_.max);
+    if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
+    if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified(tolerance_))
+      return std::move(result_);
+    keepIfEnough();
+    if (correctionPays()) {
+      correct();
+    } else {
+      if (policy_.takesBack && corrections_ > 0 && deviation_.max > beforeCorrection_.deviation.max)
+        restore(std::move(beforeCorrection_));
+      refine();
+      chooseParameters();
+    }
+  }
+  throw unreachable();
+}
+
+void FitRounds::takeSamples() {
+  samples_ = makeSamples(false);
+  cells_ = cells();
+  emphasis_.assign(samples_.size(), 1);
+}
+
+/// The surfaces through the samples at their parameters, and their deviation.
+void FitRounds::solve() {
+  std::vector<std::vector<Datum>> data(charts());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const auto& s = samples_[i];
+    data[s.chart].push_back({s.parameter, s.point, s.weight * emphasis_[i]});
+  }
+  auto surfaces = leastSquares(data);
+  for (int attempt = 0; !surfaces && attempt < 4; ++attempt) {
+    stiffen(100);
+    surfaces = leastSquares(data);
+  }
+  if (!surfaces)
+    throw stageError("fit",
+                     std::string("the normal equations of the ") +
+                         (policy_.several ? "surfaces" : "surface") + " are singular",
+                     region_.name);
+  result_.surfaces = std::move(*surfaces);
+  previous_ = deviation_;
+  deviation_ = measure(samples_, feet_);
+  failing_ = places(samples_, threshold(deviation_.max));
+}
+
+/// Sets each sample's distance. Gives the feet as well: each one's place, or the sample's own where the foot
+/// lies more than a knot interval away or on the other side.
+Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const {
+  feet.resize(samples.size());
+  std::vector<char> turnedOver(samples.size(), 0);
+  parallelParts(int(samples.size()), threads_, [&](int begin, int end) {
+    progress_.check();
+    for (int i = begin; i < end; ++i) {
+      auto& s = samples[i];
+      const FitPlace from{s.chart, s.parameter};
+      FitPlace start{};
+      const FitPlace at = foot(s.point, from, start);
+      const auto& surface = result_.surfaces[at.chart];
+      const auto jet = surface.jet(at.parameter[0], at.parameter[1]);
+      const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
+      s.distance = d.dot(normal) < 0 ? -d.norm() : d.norm();
+      Eigen::Vector2d move = (at.parameter - start.parameter).cwiseAbs();
+      if (surface.closedU) move[0] = std::min(move[0], surface.lastU() - surface.firstU() - move[0]);
+      const SplineLine &u = space(at.chart).u, &v = space(at.chart).v;
+      const bool near =
+          move[0] <= u.width(u.spanOf(at.parameter[0])) && move[1] <= v.width(v.spanOf(at.parameter[1]));
+      turnedOver[i] = !s.agrees(normal);
+      feet[i] = near && !turnedOver[i] && !isHeld(s) ? at : from;
+    }
+  });
+  return deviationOf(samples, turnedOver);
+}
+
+/// Of the samples that lie farther away than that.
+std::vector<FitPlace> FitRounds::places(const std::vector<SurfaceSample>& samples, double above) {
+  std::vector<FitPlace> result;
+  for (const auto& s : samples)
+    if (!(std::abs(s.distance) <= above)) result.push_back({s.chart, s.parameter});
+  return result;
+}
+
+void FitRounds::moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].chart = places[i].chart;
+    samples[i].parameter = places[i].parameter;
+  }
+}
+
+/// Moves the parameters to the feet.
+void FitRounds::correct() {
+  ++corrections_;
+  if (policy_.takesBack) beforeCorrection_ = state();
+  moveTo(feet_, samples_);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const double part = samples_[i].distance / deviation_.max;
+    emphasis_[i] = 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
+  }
+}
+
+/// On new knots: the map's parameters, which are smooth where the map is, or those corrected on the coarser
+/// knots, which carry a trace of these but are free of a rough map's noise; whichever bring the surfaces
+/// closer.
+void FitRounds::chooseParameters() {
+  const bool corrected = corrections_ > 0;
+  corrections_ = 0;
+  takeSamples();
+  if (!corrected) return;
+  std::vector<FitPlace> ofMap;
+  for (const auto& s : samples_) ofMap.push_back({s.chart, s.parameter});
+  measure(samples_, feet_);
+  moveTo(feet_, samples_);
+  solve();
+  State withFeet = state();
+  moveTo(ofMap, samples_);
+  solve();
+  const Deviation& corrections = withFeet.deviation;
+  if (corrections.turnedOver == 0 && corrections.max < kCorrectedWins * deviation_.max)
+    restore(std::move(withFeet));
+  solved_ = true;
+}
+
+/// Keeps the surfaces for the case that none come closer.
+void FitRounds::keepIfEnough() {
+  if (deviation_.max > enough_ || deviation_.turnedOver > 0) return;
+  if (kept_ && deviation_.max > 0.95 * kept_->maxDeviation) return;
+  const auto failing = failing_;
+  if (verified(enough_)) kept_ = result_;
+  failing_ = failing;
+}
+
+/// Whether other samples keep the tolerance as well.
+bool FitRounds::verified(double tolerance) {
+  auto control = makeSamples(true);
+  std::vector<FitPlace> feet;
+  const Deviation found = measure(control, feet);
+  if (policy_.failsAtFeet) moveTo(feet, control);
+  result_.maxDeviation = std::max(found.max, deviation_.max);
+  result_.rmsDeviation = found.rms;
+  result_.rounds = rounds_;
+  if (found.max <= tolerance && found.turnedOver == 0) return true;
+  failing_ = places(control, threshold(found.max));
+  deviation_.turnedOver = found.turnedOver;
+  return false;
+}
+
+/// Deviation above which a sample asks for knots.
+double FitRounds::threshold(double largest) const {
+  return thorough_ ? tolerance_ : std::max(tolerance_, kWorstPart * largest);
+}
+
+bool FitRounds::correctionPays() const {
+  const bool early = deviation_.max > kCorrectionStarts * tolerance_ && !stalled();
+  if (deviation_.turnedOver > kFewTurned * double(samples_.size())) return false;
+  if (deviation_.max <= tolerance_ || early || corrections_ >= kMaxCorrections) return false;
+  return corrections_ == 0 || deviation_.max <= kCorrectionPays * previous_.max ||
+         deviation_.rms <= kCorrectionPays * previous_.rms;
+}
+
+void FitRounds::refine() {
+  if (failing_.empty()) {
+    // Within tolerance, but turned over somewhere.
+    if (++stiffened_ > 3)
+      throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
+                       region_.name, samples_[std::max(0, deviation_.firstTurned)].point);
+    stiffen(30);
+    return;
+  }
+  idle_ = best_ < 0.8 * atRefinement_ ? 0 : idle_ + 1;
+  thorough_ = stalled();
+  atRefinement_ = best_;
+  if (idle_ > 0) giveWay();
+  if (idle_ > kPatience || !insertKnots() || poles() > policy_.maxPoles) throw unreachable();
+}
+
+void FitRounds::stiffen(double factor) {
+  fairness_.withData *= factor;
+  fairness_.withoutData *= factor;
+}
+
+FitRounds::State FitRounds::state() const {
+  return {samples_, feet_, failing_, result_.surfaces, deviation_};
+}
+
+void FitRounds::restore(State state) {
+  samples_ = std::move(state.samples);
+  feet_ = std::move(state.feet);
+  failing_ = std::move(state.failing);
+  result_.surfaces = std::move(state.surfaces);
+  deviation_ = state.deviation;
+}
+
+int FitRounds::poles() const {
+  int sum = 0;
+  for (int c = 0; c < charts(); ++c) sum += space(c).poles();
+  return sum;
+}
+
+Error FitRounds::unreachable() const {
+  const auto& where = samples_[std::max(0, deviation_.worst)].point;
+  const std::string count = std::to_string(poles());
+  if (best_ <= tolerance_)
+    return stageError("fit",
+                      "the surface folds over wherever it keeps the tolerance " + shortNumber(tolerance_) +
+                          " (" + count + " poles); use a smaller edge length, or cut the region there",
+                      region_.name, where);
+  return stageError("fit",
+                    "the tolerance " + shortNumber(tolerance_) + " cannot be met, the " +
+                        (policy_.several ? "surfaces come" : "surface comes") + " within " +
+                        shortNumber(best_) + " with " + count +
+                        " poles; allow a larger tolerance or use a smaller edge length",
+                    region_.name, where);
+}
+
+}  // namespace trimquad

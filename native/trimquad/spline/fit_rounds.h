@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "trimquad/base/error.h"
+#include "trimquad/spline/deviation.h"
+#include "trimquad/spline/fit_surface.h"
+#include "trimquad/spline/spline_space.h"
+
+namespace trimquad {
+
+/// A parameter of one of the fitted surfaces.
+struct FitPlace {
+  int chart;
+  Eigen::Vector2d parameter;
+};
+
+/// The rounds of a fit, of one surface or of several that are joined: solve, measure, then correct the
+/// parameters or insert knots, until the tolerance holds. What the surfaces are is left to the derived class.
+class FitRounds {
+ public:
+  virtual ~FitRounds() = default;
+
+  /// The surfaces in `surfaces`, by chart; such as are within what is enough where the tolerance cannot be
+  /// reached. Throws Error(Stage, "fit") where not even those are.
+  FittedSurface run();
+
+ protected:
+  struct Policy {
+    int maxRounds, maxPoles;
+    bool takesBack;    ///< corrections that made things worse
+    bool failsAtFeet;  ///< knots go where the failing control samples' feet are, not their parameters
+    bool several;      ///< surfaces, for messages
+  };
+  FitRounds(const Region& region, const FitOptions& options, const Policy& policy, const Progress& progress);
+  /// To be called by the derived class's constructor.
+  /// \param mapArea quads^2
+  /// \param extent  side of a small triangle's image, quads
+  void setScale(double surfaceArea, double mapArea, double extent);
+
+  virtual int charts() const = 0;
+  virtual const SplineSpace& space(int chart) const = 0;
+  virtual std::vector<SurfaceSample> makeSamples(bool control) = 0;
+  /// Of the samples made last.
+  virtual const std::vector<std::array<int, 3>>& cells() const = 0;
+  virtual std::optional<std::vector<SplineSurface>> leastSquares(
+      const std::vector<std::vector<Datum>>& data) const = 0;
+  /// The foot of a point, from a place near it; `start` is that place as seen from the foot's chart.
+  virtual FitPlace foot(const Eigen::Vector3d& p, const FitPlace& from, FitPlace& start) const = 0;
+  /// Whether the sample's parameter is not to be corrected.
+  virtual bool isHeld(const SurfaceSample&) const { return false; }
+  /// Knots where samples fail; false where none can be inserted.
+  virtual bool insertKnots() = 0;
+  /// Called before knots are inserted where the refinement before brought little.
+  virtual void giveWay() {}
+
+  const Region& region_;
+  const double tolerance_, enough_;
+  const int threads_;
+  const Progress& progress_;
+  FittedSurface result_;
+  std::vector<SurfaceSample> samples_;
+  std::vector<std::array<int, 3>> cells_;
+  std::vector<FitPlace> failing_;
+  Fairness fairness_;
+  double narrowest_ = 0;  ///< knot interval, quads
+
+ private:
+  struct State {
+    std::vector<SurfaceSample> samples;
+    std::vector<FitPlace> feet, failing;
+    std::vector<SplineSurface> surfaces;
+    Deviation deviation;
+  };
+
+  FittedSurface rounds();
+  void takeSamples();
+  void solve();
+  Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
+  static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
+  static void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples);
+  void correct();
+  void chooseParameters();
+  void keepIfEnough();
+  bool verified(double tolerance);
+  double threshold(double largest) const;
+  bool stalled() const { return best_ > 0.5 * atRefinement_; }
+  bool correctionPays() const;
+  void refine();
+  void stiffen(double factor);
+  State state() const;
+  void restore(State state);
+  int poles() const;
+  Error unreachable() const;
+
+  const Policy policy_;
+  std::optional<FittedSurface> kept_;  ///< within what is enough
+  Deviation deviation_, previous_;
+  std::vector<FitPlace> feet_;
+  std::vector<double> emphasis_;  ///< by sample: factor of its weight
+  State beforeCorrection_;
+  double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
+  bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
+  bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
+  int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0;
+};
+
+}  // namespace trimquad
