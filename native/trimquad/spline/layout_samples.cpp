@@ -9,14 +9,6 @@
 namespace trimquad {
 namespace {
 
-constexpr int kSamplesAcrossSpan = 4;
-/// One triangle in this many is smaller than the extent that is given for them.
-constexpr std::size_t kSmallTriangles = 20;
-/// Part of the weight that the mesh's vertices carry.
-constexpr double kVertexShare = 0.5;
-/// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
-constexpr double kBoundaryStrip = 0.25;
-
 /// How far from a singularity parameters are moved, quads.
 constexpr double kSingularReach = 2;
 /// How far from one the samples are denser, knot intervals.

@@ -6,18 +6,6 @@
 #include "trimquad/spline/knot_lattice.h"
 
 namespace trimquad {
-namespace {
-
-constexpr int kSamplesAcrossSpan = 4;
-/// One triangle in this many is smaller than the extent that is given for them.
-constexpr std::size_t kSmallTriangles = 20;
-/// Part of the weight that the mesh's vertices carry.
-constexpr double kVertexShare = 0.5;
-/// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
-constexpr double kBoundaryStrip = 0.25;
-
-}  // namespace
-
 SurfaceSamples::SurfaceSamples(const Region& region, const GridMap& map, const Chart& chart, double seam,
                                const Progress& progress)
     : region_(region), mesh_(map.mesh), chart_(chart), seam_(seam) {

@@ -10,6 +10,15 @@
 
 namespace trimquad {
 
+/// Samples along a side of a knot rectangle.
+inline constexpr int kSamplesAcrossSpan = 4;
+/// One triangle in this many is smaller than the extent that is given for them.
+inline constexpr std::size_t kSmallTriangles = 20;
+/// Part of the weight that the mesh's vertices carry.
+inline constexpr double kVertexShare = 0.5;
+/// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
+inline constexpr double kBoundaryStrip = 0.25;
+
 /// A point of a region, and where a spline surface comes closest to it.
 struct SurfaceSample {
   Eigen::Vector3d point, normal;
