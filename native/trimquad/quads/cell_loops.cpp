@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 
-#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {
@@ -48,21 +47,12 @@ CellLoops::CellLoops(const Parametrization& map, const GridOverlay& overlay, con
     }
 }
 
-/// Pieces that no grid line separates belong to one cell.
 void CellLoops::joinPieces() {
-  DisjointSets sets(overlay_.pieces.size());
-  for (size_t e = 0; e < overlay_.edges.size(); ++e)
-    if (!overlay_.edges[e].separates())
-      sets.unite(overlay_.halfedges[2 * e].piece, overlay_.halfedges[2 * e + 1].piece);
-  cellOfPiece_.resize(overlay_.pieces.size());
+  cellOfPiece_ = overlay_.cellOfPiece();
   for (int p = 0; p < int(overlay_.pieces.size()); ++p) {
-    const int root = sets.root(p);
-    if (root == p) {
-      cellOfPiece_[p] = int(firstPiece_.size());
+    if (cellOfPiece_[p] == int(firstPiece_.size())) {
       firstPiece_.push_back(p);
       area_.push_back(0);
-    } else {
-      cellOfPiece_[p] = cellOfPiece_[root];
     }
     area_[cellOfPiece_[p]] += overlay_.pieces[p].doubleArea;
   }

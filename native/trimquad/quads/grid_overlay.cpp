@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {
@@ -290,6 +291,19 @@ class Cutter {
 };
 
 }  // namespace
+
+std::vector<int> GridOverlay::cellOfPiece() const {
+  DisjointSets sets(pieces.size());
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (!edges[e].separates()) sets.unite(halfedges[2 * e].piece, halfedges[2 * e + 1].piece);
+  std::vector<int> result(pieces.size());
+  int cells = 0;
+  for (int p = 0; p < int(pieces.size()); ++p) {
+    const int root = sets.root(p);
+    result[p] = root == p ? cells++ : result[root];
+  }
+  return result;
+}
 
 GridOverlay overlayGrid(const Parametrization& map, const Progress& progress) {
   GridOverlay overlay;

@@ -48,6 +48,9 @@ struct GridOverlay {
   WideQuanta borderRounding = 0;
 
   int target(int h) const { return halfedges[h ^ 1].origin; }
+  /// By piece: the cell that it is a part of. Pieces that neither grid line nor boundary separates belong to
+  /// one cell; cells are numbered by their first pieces.
+  std::vector<int> cellOfPiece() const;
 };
 
 /// Cuts the triangles of a valid integer grid map along all grid lines.

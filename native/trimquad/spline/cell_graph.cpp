@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {
@@ -14,26 +13,15 @@ CellGraph::CellGraph(const Parametrization& map, const Progress& progress)
   for (const auto e : map.aligned) aligned_[e.idx()] = !map.mesh.is_boundary(e);
   joinPieces();
   unrollCells();
-  sides_.resize(first_.size());
+  sides_.resize(piecesOf_.size());
   for (int h = 0; h < int(overlay_.halfedges.size()); ++h)
     if (overlay_.edges[h >> 1].grid && !overlay_.edges[h >> 1].border) sides_[cellAt(h)].push_back(h);
 }
 
 void CellGraph::joinPieces() {
-  DisjointSets sets(overlay_.pieces.size());
-  for (std::size_t e = 0; e < overlay_.edges.size(); ++e)
-    if (!overlay_.edges[e].separates())
-      sets.unite(overlay_.halfedges[2 * e].piece, overlay_.halfedges[2 * e + 1].piece);
-  cellOfPiece_.resize(overlay_.pieces.size());
+  cellOfPiece_ = overlay_.cellOfPiece();
   for (int p = 0; p < int(overlay_.pieces.size()); ++p) {
-    const int root = sets.root(p);
-    if (root == p) {
-      cellOfPiece_[p] = int(first_.size());
-      first_.push_back(p);
-      piecesOf_.emplace_back();
-    } else {
-      cellOfPiece_[p] = cellOfPiece_[root];
-    }
+    if (cellOfPiece_[p] == int(piecesOf_.size())) piecesOf_.emplace_back();
     piecesOf_[cellOfPiece_[p]].push_back(p);
   }
 }
@@ -50,7 +38,8 @@ void CellGraph::unrollCells() {
     if (const int p = overlay_.halfedges[h].piece; p >= 0 && some_[p] < 0) some_[p] = h;
   toCell_.resize(overlay_.pieces.size());
   std::vector<char> reached(overlay_.pieces.size(), 0);
-  for (const int first : first_) {
+  for (const auto& pieces : piecesOf_) {
+    const int first = pieces.front();
     std::vector<int> queue{first};
     reached[first] = 1;
     for (std::size_t next = 0; next < queue.size(); ++next) {
@@ -89,7 +78,7 @@ bool CellGraph::isFeature(int halfedge) const {
 }
 
 FixedVector CellGraph::place(int cell) const {
-  const auto& piece = overlay_.pieces[first_[cell]];
+  const auto& piece = overlay_.pieces[piecesOf_[cell].front()];
   return {2 * piece.cell.u + 1, 2 * piece.cell.v + 1};
 }
 

@@ -16,7 +16,7 @@ class CellGraph {
   const Parametrization& map() const { return map_; }
   const GridOverlay& overlay() const { return overlay_; }
 
-  int size() const { return int(first_.size()); }
+  int size() const { return int(piecesOf_.size()); }
   int cellOfPiece(int piece) const { return cellOfPiece_[piece]; }
   const std::vector<int>& pieces(int cell) const { return piecesOf_[cell]; }
   int halfedgeOf(int piece) const { return some_[piece]; }  ///< one of its halfedges
@@ -52,7 +52,7 @@ class CellGraph {
 
   const Parametrization& map_;
   GridOverlay overlay_;
-  std::vector<int> cone_, cellOfPiece_, first_, some_;
+  std::vector<int> cone_, cellOfPiece_, some_;
   std::vector<std::vector<int>> piecesOf_, sides_;
   std::vector<Transition> toCell_;
   std::vector<char> aligned_;
