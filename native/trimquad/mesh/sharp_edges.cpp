@@ -21,10 +21,14 @@ constexpr double kSharpAnywhere = std::numbers::pi / 3;  ///< folds over this st
 constexpr double kContrast = 2;                          ///< folds stand out of so much smaller ones
 constexpr double kAround =
     0.8;  ///< share of the edges around that are not on sharp curves where there are any
-constexpr double kWideFacet = 0.5;  ///< quad edges: triangles that high are shape, not sampling
-constexpr double kOpenEnd = 2;      ///< curves that end openly must be so many times longer
-constexpr int kBridge = 2;          ///< edges
-constexpr int kRings = 2;           ///< how many edges around an edge its surroundings reach
+constexpr double kFacet = 0.5;    ///< quad edges: smaller triangles are sampling
+constexpr double kWideFacet = 2;  ///< quad edges: triangles that high are shape, whatever is around
+constexpr double kFlatContrast =
+    8;                          ///< folds between facets stand out of surfaces so much flatter in the main
+constexpr double kMain = 0.65;  ///< share of the edges around that are "in the main"
+constexpr double kOpenEnd = 2;  ///< curves that end openly must be so many times longer
+constexpr int kBridge = 2;      ///< edges
+constexpr int kRings = 2;       ///< how many edges around an edge its surroundings reach
 constexpr double kRounding = 1e-9;  ///< radians
 
 Vector3d areaNormal(const SurfaceMesh& mesh, HalfedgeHandle h) {
@@ -36,6 +40,13 @@ Vector3d areaNormal(const SurfaceMesh& mesh, HalfedgeHandle h) {
 double turn(const SurfaceMesh& mesh, HalfedgeHandle arriving, HalfedgeHandle leaving) {
   const Vector3d a = mesh.calc_edge_vector(arriving), b = mesh.calc_edge_vector(leaving);
   return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// The value that the given share of the values does not exceed. Reorders them.
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + long(share * double(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 class SharpCurves {
@@ -77,20 +88,23 @@ class SharpCurves {
 
   bool isProminent(EdgeHandle e) const {
     const double fold = std::abs(fold_[e.idx()]);
-    return fold > kSharpAnywhere || betweenWideFacets(e) || fold >= kContrast * foldAround(e);
+    const double width = facetWidth(e) / options_.quadLength;
+    if (fold > kSharpAnywhere || width >= kWideFacet) return true;
+    std::vector<double> around = foldsAround(e);
+    return fold >= kContrast * quantile(around, kAround) ||
+           (width >= kFacet && fold >= kFlatContrast * quantile(around, kMain));
   }
 
-  bool betweenWideFacets(EdgeHandle e) const {
-    for (const int side : {0, 1}) {
-      const auto h = mesh_.halfedge_handle(e, side);
-      const double height = areaNormal(mesh_, h).norm() / mesh_.calc_edge_length(e);
-      if (height < kWideFacet * options_.quadLength) return false;
-    }
-    return true;
+  /// The smaller height of the two triangles over the edge.
+  double facetWidth(EdgeHandle e) const {
+    double width = std::numeric_limits<double>::infinity();
+    for (const int side : {0, 1})
+      width = std::min(width, areaNormal(mesh_, mesh_.halfedge_handle(e, side)).norm());
+    return width / mesh_.calc_edge_length(e);
   }
 
-  /// How sharp the edges within a few edges of an edge are, up to the sharpest ones: these are its own curve.
-  double foldAround(EdgeHandle e) const {
+  /// How sharp the edges within a few edges of an edge are.
+  std::vector<double> foldsAround(EdgeHandle e) const {
     std::set<VertexHandle> near;
     for (const int side : {0, 1}) near.insert(mesh_.to_vertex_handle(mesh_.halfedge_handle(e, side)));
     for (int ring = 0; ring < kRings; ++ring) {
@@ -104,9 +118,7 @@ class SharpCurves {
       for (const auto h : mesh_.voh_range(v))
         if (v < mesh_.to_vertex_handle(h) && near.count(mesh_.to_vertex_handle(h)))
           folds.push_back(std::abs(fold(h)));
-    const auto middle = folds.begin() + long(kAround * double(folds.size()));
-    std::nth_element(folds.begin(), middle, folds.end());
-    return *middle;
+    return folds;
   }
 
   /// Every curve that ends goes on straight ahead as long as the surface bends there.

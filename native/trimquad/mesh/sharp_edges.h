@@ -27,8 +27,9 @@ double foldAngle(const SurfaceMesh& mesh, EdgeHandle e);
 ///
 /// Angles alone find thousands of scattered edges on a scan or a coarse organic mesh, so, against the size of
 /// the quads:
-/// - a curve starts at edges over `angle` that stand out: twice as sharp as four in five of the edges around,
-///   over 60 degrees, or between facets half as wide as a quad;
+/// - a curve starts at edges over `angle` that stand out: twice as sharp as four in five of the edges around;
+///   between facets half as wide as a quad, also eight times as sharp as two in three; over 60 degrees, and
+///   between facets twice as wide as a quad, always;
 /// - it follows its direction over blunter edges that stand out, and a few that do not on the way to others
 ///   (hysteresis);
 /// - edges are one curve where they meet and bend to the same side, ridge or valley, without a kink of more

@@ -74,7 +74,26 @@ TEST(SharpEdges, theFacetsOfACoarseTubeAreNoEdgesUnlessTheyAreAsWideAsQuads) {
   });
   EXPECT_GT(sharpCount(tube, {.angle = 30 * kDegree}), 50);
   EXPECT_EQ(sharpCount(tube, {.angle = 30 * kDegree, .quadLength = 2}), 0);
-  EXPECT_GT(sharpCount(tube, {.angle = 30 * kDegree, .quadLength = 0.5}), 50);
+  EXPECT_GT(sharpCount(tube, {.angle = 30 * kDegree, .quadLength = 0.25}), 50);
+}
+
+TEST(SharpEdges, foldsOfARollingSurfaceAreNoEdgesHoweverLargeTheTriangles) {
+  // Every edge folds by up to 40 degrees, and the triangles are as wide as the quads.
+  const auto rolling = sheet(24, 24, [](double i, double j) {
+    return Eigen::Vector3d(i, j, 0.35 * std::sin(2.1 * i) * std::cos(1.7 * j));
+  });
+  EXPECT_GT(sharpCount(rolling, {.angle = 30 * kDegree}), 100);
+  EXPECT_EQ(sharpCount(rolling, {.angle = 30 * kDegree, .quadLength = 1, .shortest = 2}), 0);
+}
+
+TEST(SharpEdges, chamfersCloseToEachOtherAreEdgesOfAFlatSurface) {
+  // Grooves with 45 degree flanks, four to a row of flat strips: more than a fifth of the edges are sharp.
+  const auto grooved = sheet(24, 24, [](double i, double j) {
+    const int step = int(i) % 6;
+    return Eigen::Vector3d(i, j, step == 2 || step == 3 ? 1 : 0);
+  });
+  EXPECT_EQ(sharpCount(grooved, {.angle = 30 * kDegree, .quadLength = 1, .shortest = 2}),
+            sharpCount(grooved, {.angle = 30 * kDegree}));
 }
 
 TEST(SharpEdges, aShortEdgeBetweenLongOnesStays) {
