@@ -18,10 +18,16 @@ from .source import Source
 FIT_MARGIN = {"cad": 0.55, "mesh": 0.75}
 # A fit that cannot come that close is taken at this part of the tolerance.
 ENOUGH = 0.95
-# A face that crosses itself beyond its trim, or in a bend that the tolerance left loose, is fitted again this many times,
-# each time to this part of the tolerance before.
-REFITS = 3
-REFIT_PART = 0.4
+# A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
+# again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), cut in
+# two where it bends most, to this part of the tolerance.
+REFITS = (
+    {"smallest_rectangle": True},
+    {"cut": True},
+    {"cut": True},
+    {"part": 0.4},
+    {"part": 0.16},
+)
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Triangles per quad edge of the tessellation.
@@ -42,6 +48,7 @@ class RegionResult:
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
         self.refits = self.field_edits = 0
+        self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.seconds = {}
 
     @property
@@ -281,11 +288,23 @@ def _polygonal(quads, item, options):
     return quads
 
 
-def _fit(item, tolerance, result, progress):
+def _fit(item, result, progress, smallest_rectangle=False, part=1.0):
     options = result.options
-    threads = max(1, options.threads // len(result.regions))
-    enough = ENOUGH * options.tolerance if item.refits == 0 else tolerance
-    return load().fit_surface(item.mapped_region, item.grid, tolerance, enough, options.degree, threads, progress)
+    native = load()
+    tolerance = part * result.fit_tolerance
+    return native.fit_surface(
+        item.mapped_region,
+        item.grid,
+        native.FitOptions(
+            tolerance=tolerance,
+            enough=ENOUGH * options.tolerance if part == 1 else tolerance,
+            smallest_rectangle=smallest_rectangle,
+            bisections=item.bisections,
+            degree=options.degree,
+            threads=max(1, options.threads // len(result.regions)),
+        ),
+        progress,
+    )
 
 
 def _map_region(item, index, result, progress):
@@ -336,36 +355,54 @@ def _try_region(item, index, result, progress):
     if options.wants("extract"):
         item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
     if options.wants("fit"):
-        item.fitted = run("fit", _fit, item, result.fit_tolerance, result)
+        item.fitted = run("fit", _fit, item, result)
+
+
+def _refit(item, charts, error, result, progress):
+    """Fits a region again in the next of the ways there are. Where there is none left, its error is kept instead.
+
+    charts: those whose faces are at fault; empty where the region's edges are
+    """
+    try:
+        item.refits += 1
+        while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):
+            item.refits += 1
+        if item.refits > len(REFITS):
+            raise error
+        way = dict(REFITS[item.refits - 1])
+        if way.pop("cut", False):
+            item.bisections = [*item.bisections, sorted(charts)]
+        with progress.stage("fit", item.name) as native_progress:
+            item.fitted = _fit(item, result, native_progress, **way)
+    except Error as failure:
+        if failure.kind == "cancelled":
+            raise
+        item.fitted = None
+        item.error = failure
+
+
+def _applies(way, item, charts):
+    if "smallest_rectangle" in way:
+        return bool(charts) and not item.fitted.several
+    return bool(charts) or "cut" not in way
 
 
 def _refit_faulty(result, progress):
-    """Fits regions again, more closely, whose faces OpenCASCADE finds at fault. Whether the model must be trimmed again."""
-    native = load()
-    changed = False
-    for face, faults in zip(result.spline.faces, native.face_faults(result.spline)):
-        item = result.regions[face["region"]]
-        if not faults or item.fitted is None:
-            continue
-        changed = True
-        item.refits += 1
-        tolerance = result.fit_tolerance * REFIT_PART**item.refits
-        try:
-            if item.refits > REFITS:
-                advice = f"OpenCASCADE finds the fitted surface at fault ({faults[0]}); use a smaller tolerance"
-                raise Error("stage", "fit", advice, item.name)
-            with progress.stage("fit", item.name) as native_progress:
-                item.fitted = _fit(item, tolerance, result, native_progress)
-        except Error as error:
-            if error.kind == "cancelled":
-                raise
-            item.fitted = None
-            item.error = error
-    return changed
+    """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any."""
+    faulty = {}  # index of the region: charts and a fault
+    for face, faults in zip(result.spline.faces, load().face_faults(result.spline)):
+        if faults:
+            faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
+    for index, found in faulty.items():
+        item = result.regions[index]
+        advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
+        _refit(item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name), result, progress)
+    return bool(faulty)
 
 
 def _trim(result, progress):
-    """Trims and joins the fitted surfaces. A region that cannot be trimmed is left out and the others tried again."""
+    """Trims and joins the fitted surfaces. A region that cannot be trimmed is fitted again; where that does not help it
+    is left out and the others tried again."""
     native = load()
     started = time.monotonic()
     while any(r.fitted is not None for r in result.regions):
@@ -389,7 +426,9 @@ def _trim(result, progress):
             # `where` is the region's name, or the name and an edge of it.
             name = error.where.split(",")[0]
             guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
-            for item in guilty or [r for r in result.regions if r.fitted is not None]:
+            for item in guilty:
+                _refit(item, set(), error, result, progress)
+            for item in [] if guilty else [r for r in result.regions if r.fitted is not None]:
                 item.fitted = None
                 item.error = error
     if result.spline is None:

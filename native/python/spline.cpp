@@ -25,17 +25,17 @@ void bindSpline(py::module_& m) {
   py::class_<FittedSurface>(m, "FittedSurface")
       .def_readonly("max_deviation", &FittedSurface::maxDeviation)
       .def_readonly("rms_deviation", &FittedSurface::rmsDeviation)
-      .def_readonly("rounds", &FittedSurface::rounds);
-  m.def(
-      "fit_surface",
-      [](const Region& region, const GridMap& map, double tolerance, double enough, int degree, int threads,
-         const Progress& progress) {
-        return fitSurface(region, map,
-                          {.tolerance = tolerance, .enough = enough, .degree = degree, .threads = threads},
-                          progress);
-      },
-      py::arg("region"), py::arg("grid"), py::arg("tolerance"), py::arg("enough"), py::arg("degree"),
-      py::arg("threads"), py::arg("progress"), Released());
+      .def_readonly("rounds", &FittedSurface::rounds)
+      .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
+  py::class_<FitOptions>(m, "FitOptions")
+      .def(py::init([](double tolerance, double enough, bool smallestRectangle,
+                       std::vector<std::vector<int>> bisections, int degree, int threads) {
+             return FitOptions{tolerance, enough, smallestRectangle, std::move(bisections), degree, threads};
+           }),
+           py::kw_only(), py::arg("tolerance"), py::arg("enough"), py::arg("smallest_rectangle"),
+           py::arg("bisections"), py::arg("degree"), py::arg("threads"));
+  m.def("fit_surface", &fitSurface, py::arg("region"), py::arg("grid"), py::arg("options"),
+        py::arg("progress"), Released());
 
   py::class_<SplineModel>(m, "SplineModel")
       .def_readonly("loose_edges", &SplineModel::looseEdges)
@@ -44,6 +44,7 @@ void bindSpline(py::module_& m) {
         for (const SplineFace& face : model.faces) {
           py::dict entry;
           entry["region"] = face.region;
+          entry["chart"] = face.chart;
           entry["control_points"] = face.surface.poles.size();
           entry["edge_tolerance"] = edgeTolerance(model, face);
           faces.append(entry);

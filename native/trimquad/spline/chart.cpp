@@ -1,7 +1,10 @@
 #include "trimquad/spline/chart.h"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -140,6 +143,32 @@ std::optional<Chart> singleChart(const GridMap& map) {
     if (error.kind() != Error::Kind::Stage) throw;
     return {};
   }
+}
+
+Chart turnedToSmallestRectangle(const Chart& chart, const SurfaceMesh& mesh) {
+  TRIMQUAD_ASSERT(!chart.period);
+  std::vector<Eigen::Vector2d> outline;
+  for (const auto h : mesh.halfedges())
+    if (mesh.is_boundary(mesh.opposite_halfedge_handle(h)))
+      outline.push_back(chart.scale.toQuads(chart.corner[h.idx()]));
+  const auto turn = [](int degrees) { return Eigen::Rotation2Dd(degrees * M_PI / 180).toRotationMatrix(); };
+  int best = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int degrees = 0; degrees < 90; ++degrees) {
+    Eigen::AlignedBox2d box;
+    for (const auto& x : outline) box.extend(turn(degrees) * x);
+    if (box.volume() < smallest) {
+      smallest = box.volume();
+      best = degrees;
+    }
+  }
+  Chart result = chart;
+  const Eigen::Matrix2d matrix = turn(best);
+  for (auto& x : result.corner) {
+    const Eigen::Vector2d y = matrix * Eigen::Vector2d(double(x.u), double(x.v));
+    x = {std::llround(y[0]), std::llround(y[1])};
+  }
+  return result;
 }
 
 }  // namespace trimquad

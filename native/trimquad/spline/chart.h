@@ -23,4 +23,8 @@ Chart chart(const GridMap& map);
 /// The same, empty instead of an error.
 std::optional<Chart> singleChart(const GridMap& map);
 
+/// An open chart turned by an angle so that its bounding rectangle is the smallest, to a degree. Coordinates
+/// are rounded to quanta; grid lines are no longer lines of the plane.
+Chart turnedToSmallestRectangle(const Chart& chart, const SurfaceMesh& mesh);
+
 }  // namespace trimquad

@@ -1,6 +1,7 @@
 #include "trimquad/spline/chart_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <set>
@@ -246,6 +247,65 @@ class Joining {
   std::set<std::array<int, 4>> refused_;
 };
 
+/// Place on the doubled grid of the cell in its chart.
+FixedVector placeOf(const CellGraph& graph, const ChartPartition& charts, int cell) {
+  return graph.moved(charts.toChart[cell], graph.place(cell));
+}
+
+/// By cell: a normal of its surface, averaged over the triangles that reach into it.
+std::vector<Eigen::Vector3d> cellNormals(const CellGraph& graph) {
+  const auto& mesh = graph.map().mesh;
+  std::vector<Eigen::Vector3d> result(graph.size(), Eigen::Vector3d::Zero());
+  for (int c = 0; c < graph.size(); ++c)
+    for (const int piece : graph.pieces(c)) {
+      const auto h = mesh.halfedge_handle(graph.overlay().pieces[piece].triangle);
+      const Eigen::Vector3d p = mesh.point(mesh.from_vertex_handle(h)),
+                            q = mesh.point(mesh.to_vertex_handle(h)),
+                            r = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(h)));
+      result[c] += double(graph.overlay().pieces[piece].doubleArea) * (q - p).cross(r - p).normalized();
+    }
+  for (auto& n : result) n.normalize();
+  return result;
+}
+
+/// A grid line of a chart's plane.
+struct ChartLine {
+  int axis;   ///< that it crosses
+  Quanta at;  ///< on the doubled grid, even
+  bool isBeyond(FixedVector place) const { return place[axis] > at; }
+};
+
+/// The line to cut a chart at, if it has more than one row of cells.
+std::optional<ChartLine> middleOfBend(const CellGraph& graph, const ChartPartition& charts, int chart,
+                                      const std::vector<Eigen::Vector3d>& normals) {
+  struct Sum {
+    double angle = 0;
+    int sides = 0;
+  };
+  std::map<Quanta, Sum> bend[2];  // by line
+  for (const auto& placed : charts.charts[chart])
+    for (const int h : graph.sides(placed.cell)) {
+      const int other = graph.cellAcross(h);
+      if (charts.chartOf[other] != chart) continue;
+      const FixedVector here = placeOf(graph, charts, placed.cell), there = placeOf(graph, charts, other);
+      const int axis = here.u == there.u ? 1 : 0;
+      auto& sum = bend[axis][(here[axis] + there[axis]) / 2];
+      const Eigen::Vector3d &n = normals[placed.cell], &m = normals[other];
+      sum.angle += std::atan2(n.cross(m).norm(), n.dot(m));
+      ++sum.sides;
+    }
+  double total[2] = {0, 0};
+  for (const int axis : {0, 1})
+    for (const auto& [line, sum] : bend[axis]) total[axis] += sum.angle / sum.sides;
+  const int axis = bend[1].empty() || (!bend[0].empty() && total[0] >= total[1]) ? 0 : 1;
+  double passed = 0;
+  for (const auto& [line, sum] : bend[axis]) {
+    passed += sum.angle / sum.sides;
+    if (passed >= total[axis] / 2) return ChartLine{axis, line};
+  }
+  return {};
+}
+
 }  // namespace
 
 ChartPartition blocks(const CellGraph& graph, const Progress& progress) {
@@ -288,6 +348,43 @@ ChartPartition blocks(const CellGraph& graph, const Progress& progress) {
 
 ChartPartition joined(const CellGraph& graph, const ChartPartition& charts, const Progress& progress) {
   return Joining(graph, charts).run(progress);
+}
+
+ChartPartition bisected(const CellGraph& graph, const ChartPartition& charts,
+                        const std::vector<int>& chosen) {
+  const auto normals = cellNormals(graph);
+  ChartPartition result = charts;
+  for (const int chart : chosen) {
+    const auto line = middleOfBend(graph, charts, chart, normals);
+    if (!line) continue;
+    // Each side of the line may consist of several parts.
+    std::set<int> left;
+    for (const auto& placed : charts.charts[chart]) left.insert(placed.cell);
+    result.charts[chart].clear();
+    bool first = true;
+    while (!left.empty()) {
+      const int start = *left.begin();
+      left.erase(left.begin());
+      const int id = first ? chart : int(result.charts.size());
+      if (!first) result.charts.emplace_back();
+      first = false;
+      std::deque<int> queue{start};
+      while (!queue.empty()) {
+        const int cell = queue.front();
+        queue.pop_front();
+        result.charts[id].push_back({cell, charts.toChart[cell]});
+        result.chartOf[cell] = id;
+        for (const int h : graph.sides(cell)) {
+          const int other = graph.cellAcross(h);
+          if (charts.chartOf[other] == chart &&
+              line->isBeyond(placeOf(graph, charts, other)) == line->isBeyond(placeOf(graph, charts, cell)) &&
+              left.erase(other))
+            queue.push_back(other);
+        }
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace trimquad

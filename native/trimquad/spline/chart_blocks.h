@@ -27,4 +27,8 @@ ChartPartition blocks(const CellGraph& graph, const Progress& progress);
 /// fullest first.
 ChartPartition joined(const CellGraph& graph, const ChartPartition& charts, const Progress& progress);
 
+/// Cuts the chosen charts along a grid line each: across the axis along which their surface bends more, where
+/// it has bent half as much as it does in all. A chart without such a line stays whole.
+ChartPartition bisected(const CellGraph& graph, const ChartPartition& charts, const std::vector<int>& chosen);
+
 }  // namespace trimquad

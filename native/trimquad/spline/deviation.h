@@ -14,9 +14,8 @@ inline constexpr double kFootStep = 1e-6;
 /// How far a region's samples lie from a surface.
 struct Deviation {
   double max = 0, rms = 0;
-  int worst = -1;      ///< index of the sample
-  int turnedOver = 0;  ///< samples where the surface's normal points the other way
-  int firstTurned = -1;
+  int worst = -1;               ///< index of the sample
+  std::vector<int> turnedOver;  ///< samples where the surface's normal points the other way
 };
 
 /// \param turnedOver by sample
@@ -30,7 +29,7 @@ inline Deviation deviationOf(const std::vector<SurfaceSample>& samples, const st
       result.max = distance;
       result.worst = i;
     }
-    if (turnedOver[i] && result.turnedOver++ == 0) result.firstTurned = i;
+    if (turnedOver[i]) result.turnedOver.push_back(i);
   }
   result.rms = std::sqrt(sum / double(std::max<std::size_t>(1, samples.size())));
   return result;

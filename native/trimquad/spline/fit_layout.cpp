@@ -18,6 +18,8 @@ constexpr int kMaxPoles = 200000;
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
 constexpr double kTangentGivesWay = 0.1;
+/// The same of the reach within which the surfaces are kept fair there.
+constexpr double kReachGivesWay = 0.5;
 constexpr double kOnLine = 1e-9;  ///< quads
 
 /// A border as one of its charts sees it.
@@ -29,6 +31,15 @@ struct BorderSide {
   Transition over;  ///< into the neighbour's plane
   int neighbour;
   bool endsInside[2];  ///< whether its ends lie inside the surface
+
+  bool holds(const Eigen::Vector2d& x) const {
+    const double s = (x - start).dot(along);
+    return std::abs((x - start).dot(inward)) <= kOnLine && s >= 0 && s <= length;
+  }
+  Eigen::AlignedBox2d box() const {
+    const Eigen::Vector2d end = start + length * along;
+    return {start.cwiseMin(end), start.cwiseMax(end)};
+  }
 };
 
 std::vector<std::vector<BorderSide>> borderSides(const Layout& layout) {
@@ -129,17 +140,20 @@ class LayoutFit : public FitRounds {
 
   /// There the surfaces' parameters are bent sharply, and feet would pile up on some of their sheets.
   bool isHeld(const SurfaceSample& s) const override {
-    return std::any_of(singular_[s.chart].begin(), singular_[s.chart].end(),
-                       [&](const Eigen::Vector2d& x) { return (x - s.parameter).norm() < kStiffReach; });
+    return std::any_of(singular_[s.chart].begin(), singular_[s.chart].end(), [&](const Eigen::Vector2d& x) {
+      return (x - s.parameter).norm() < space_.stiffReach;
+    });
   }
 
   /// The foot of a point on the surfaces, from a place near it, over borders where need be.
-  FitPlace foot(const Eigen::Vector3d& p, const FitPlace& from, FitPlace& start) const override {
+  Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const override {
     const auto distance = [&](const FitPlace& x) {
       return (result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]) - p).norm();
     };
+    for (const auto& side : sides_[from.chart])
+      if (side.border->feature && side.holds(from.parameter)) return {footOnLine(p, side, from), from};
+    FitPlace start = from;
     FitPlace at{from.chart, result_.surfaces[from.chart].footPoint(p, from.parameter, kFootStep)};
-    start = from;
     for (int hop = 0; hop < kMaxHops; ++hop) {
       struct Crossing {
         FitPlace start, at;
@@ -147,17 +161,22 @@ class LayoutFit : public FitRounds {
         bool beyond;
       };
       std::optional<Crossing> best;
+      const BorderSide* crease = nullptr;
       for (const auto& side : sides_[at.chart]) {
         const double depth = (at.parameter - side.start).dot(side.inward);
         const double before = (start.parameter - side.start).dot(side.inward);
-        // A crease's other side is another sheet.
-        if (depth > kOnLine || before < -kOnLine || side.border->feature) continue;
+        if (depth > kOnLine || before < -kOnLine) continue;
         // Where the way from the start meets the line.
         const double part = before - depth > kOnLine ? before / (before - depth) : 1;
         const double s =
             (start.parameter + part * (at.parameter - start.parameter) - side.start).dot(side.along);
         const double low = side.endsInside[0] ? 0 : -0.5, high = side.length + (side.endsInside[1] ? 0 : 0.5);
         if (s < low - kOnLine || s > high + kOnLine) continue;
+        // A crease's other side is another sheet.
+        if (side.border->feature) {
+          crease = &side;
+          continue;
+        }
         const Eigen::Vector2d guess = Layout::apply(side.over, layout_.scale, at.parameter);
         const FitPlace next{side.neighbour, result_.surfaces[side.neighbour].footPoint(p, guess, kFootStep)};
         const Crossing crossing{{side.neighbour, Layout::apply(side.over, layout_.scale, start.parameter)},
@@ -168,39 +187,52 @@ class LayoutFit : public FitRounds {
             (crossing.beyond == best->beyond && crossing.distance < best->distance))
           best = crossing;
       }
+      if (crease) return {footOnLine(p, *crease, at), start, true};
       if (!best || (!best->beyond && !(best->distance < distance(at) * (1 - 1e-9)))) break;
       start = best->start;
       at = best->at;
     }
-    return at;
+    return {at, start};
   }
 
-  /// What stalls next to a singularity may be held by the tangents there.
-  void giveWay() override { space_.tangentWeight *= kTangentGivesWay; }
+  /// The same on a side of a chart.
+  FitPlace footOnLine(const Eigen::Vector3d& p, const BorderSide& side, const FitPlace& from) const {
+    return {from.chart, result_.surfaces[from.chart].footPoint(p, from.parameter, side.box(), kFootStep)};
+  }
+
+  /// What stalls next to a singularity may be held by the tangents there, and by what keeps it fair.
+  void giveWay() override {
+    space_.tangentWeight *= kTangentGivesWay;
+    space_.stiffReach *= kReachGivesWay;
+  }
+
+  /// A border's curve has only knots that both sides have: where it fails, or where the finer side's next
+  /// poles go another way than it and fold over, the coarser side is to be refined too.
+  void addCoarser(const FitPlace& x, double coarserBy, std::set<std::tuple<int, int, int>>& coarser) const {
+    const auto& own = space_.charts[x.chart];
+    for (const auto& side : sides_[x.chart]) {
+      const int runs = side.along[0] != 0 ? 0 : 1;
+      const SplineLine &line = runs == 0 ? own.u : own.v, &over = runs == 0 ? own.v : own.u;
+      const double depth = (x.parameter - side.start).dot(side.inward),
+                   s = (x.parameter - side.start).dot(side.along);
+      if (s < 0 || s > side.length || depth < -kOnLine) continue;
+      if (depth > over.width(over.spanOf((x.parameter - (depth - 1e-6) * side.inward)[1 - runs]))) continue;
+      const Eigen::Vector2d there = Layout::apply(side.over, layout_.scale, side.start + s * side.along);
+      const int axis = side.over.rotation % 2 == 0 ? runs : 1 - runs;
+      const auto& neighbour = space_.charts[side.neighbour];
+      const SplineLine& theirs = axis == 0 ? neighbour.u : neighbour.v;
+      const int span = theirs.spanOf(there[axis]);
+      if (theirs.width(span) > coarserBy * line.width(line.spanOf(x.parameter[runs])))
+        coarser.insert({side.neighbour, axis, span});
+    }
+  }
 
   bool insertKnots() override {
     std::vector<std::vector<Eigen::Vector2d>> failingIn(space_.charts.size());
     for (const auto& x : failing_) failingIn[x.chart].push_back(x.parameter);
-    // A border's curve has only knots that both sides have: where it fails, the coarser side is refined too.
     std::set<std::tuple<int, int, int>> coarser;  // chart, axis, span
-    for (const auto& x : failing_) {
-      const auto& own = space_.charts[x.chart];
-      for (const auto& side : sides_[x.chart]) {
-        const int runs = side.along[0] != 0 ? 0 : 1;
-        const SplineLine &line = runs == 0 ? own.u : own.v, &over = runs == 0 ? own.v : own.u;
-        const double depth = (x.parameter - side.start).dot(side.inward),
-                     s = (x.parameter - side.start).dot(side.along);
-        if (s < 0 || s > side.length || depth < -kOnLine) continue;
-        if (depth > over.width(over.spanOf((x.parameter - (depth - 1e-6) * side.inward)[1 - runs]))) continue;
-        const Eigen::Vector2d there = Layout::apply(side.over, layout_.scale, side.start + s * side.along);
-        const int axis = side.over.rotation % 2 == 0 ? runs : 1 - runs;
-        const auto& neighbour = space_.charts[side.neighbour];
-        const SplineLine& theirs = axis == 0 ? neighbour.u : neighbour.v;
-        const int span = theirs.spanOf(there[axis]);
-        if (theirs.width(span) > 0.75 * line.width(line.spanOf(x.parameter[runs])))
-          coarser.insert({side.neighbour, axis, span});
-      }
-    }
+    for (const auto& x : failing_) addCoarser(x, 0.75, coarser);
+    for (const auto& x : turned_) addCoarser(x, 1.5, coarser);
     std::vector<std::tuple<int, int, double>> middles;
     for (const auto& [chart, axis, span] : coarser) {
       const SplineLine& line = axis == 0 ? space_.charts[chart].u : space_.charts[chart].v;

@@ -72,7 +72,7 @@ FittedSurface FitRounds::rounds() {
     if (rounds_ == 1) start_ = best_ = deviation_.max;
     best_ = std::min(best_, deviation_.max);
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
-    if (deviation_.max <= tolerance_ && deviation_.turnedOver == 0 && verified(tolerance_))
+    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_))
       return std::move(result_);
     keepIfEnough();
     if (correctionPays()) {
@@ -114,10 +114,11 @@ void FitRounds::solve() {
   previous_ = deviation_;
   deviation_ = measure(samples_, feet_);
   failing_ = places(samples_, threshold(deviation_.max));
+  noteTurned(samples_, deviation_);
 }
 
 /// Sets each sample's distance. Gives the feet as well: each one's place, or the sample's own where the foot
-/// lies more than a knot interval away or on the other side.
+/// lies more than a knot interval away, on the other side or where a crease ends the way to it.
 Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const {
   feet.resize(samples.size());
   std::vector<char> turnedOver(samples.size(), 0);
@@ -126,8 +127,7 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
     for (int i = begin; i < end; ++i) {
       auto& s = samples[i];
       const FitPlace from{s.chart, s.parameter};
-      FitPlace start{};
-      const FitPlace at = foot(s.point, from, start);
+      const auto [at, start, limited] = foot(s.point, from);
       const auto& surface = result_.surfaces[at.chart];
       const auto jet = surface.jet(at.parameter[0], at.parameter[1]);
       const Eigen::Vector3d normal = jet.su.cross(jet.sv), d = s.point - jet.s;
@@ -138,7 +138,7 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
       const bool near =
           move[0] <= u.width(u.spanOf(at.parameter[0])) && move[1] <= v.width(v.spanOf(at.parameter[1]));
       turnedOver[i] = !s.agrees(normal);
-      feet[i] = near && !turnedOver[i] && !isHeld(s) ? at : from;
+      feet[i] = near && !limited && !turnedOver[i] && !isHeld(s) ? at : from;
     }
   });
   return deviationOf(samples, turnedOver);
@@ -150,6 +150,18 @@ std::vector<FitPlace> FitRounds::places(const std::vector<SurfaceSample>& sample
   for (const auto& s : samples)
     if (!(std::abs(s.distance) <= above)) result.push_back({s.chart, s.parameter});
   return result;
+}
+
+std::vector<FitPlace> FitRounds::places(const std::vector<SurfaceSample>& samples,
+                                        const std::vector<int>& chosen) {
+  std::vector<FitPlace> result;
+  for (const int i : chosen) result.push_back({samples[i].chart, samples[i].parameter});
+  return result;
+}
+
+void FitRounds::noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation) {
+  turned_ = places(samples, deviation.turnedOver);
+  if (!turned_.empty()) turnedPoint_ = samples[deviation.turnedOver[0]].point;
 }
 
 void FitRounds::moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) {
@@ -187,14 +199,14 @@ void FitRounds::chooseParameters() {
   moveTo(ofMap, samples_);
   solve();
   const Deviation& corrections = withFeet.deviation;
-  if (corrections.turnedOver == 0 && corrections.max < kCorrectedWins * deviation_.max)
+  if (corrections.turnedOver.empty() && corrections.max < kCorrectedWins * deviation_.max)
     restore(std::move(withFeet));
   solved_ = true;
 }
 
 /// Keeps the surfaces for the case that none come closer.
 void FitRounds::keepIfEnough() {
-  if (deviation_.max > enough_ || deviation_.turnedOver > 0) return;
+  if (deviation_.max > enough_ || !deviation_.turnedOver.empty()) return;
   if (kept_ && deviation_.max > 0.95 * kept_->maxDeviation) return;
   const auto failing = failing_;
   if (verified(enough_)) kept_ = result_;
@@ -210,9 +222,9 @@ bool FitRounds::verified(double tolerance) {
   result_.maxDeviation = std::max(found.max, deviation_.max);
   result_.rmsDeviation = found.rms;
   result_.rounds = rounds_;
-  if (found.max <= tolerance && found.turnedOver == 0) return true;
+  if (found.max <= tolerance && found.turnedOver.empty()) return true;
   failing_ = places(control, threshold(found.max));
-  deviation_.turnedOver = found.turnedOver;
+  noteTurned(control, found);
   return false;
 }
 
@@ -223,7 +235,7 @@ double FitRounds::threshold(double largest) const {
 
 bool FitRounds::correctionPays() const {
   const bool early = deviation_.max > kCorrectionStarts * tolerance_ && !stalled();
-  if (deviation_.turnedOver > kFewTurned * double(samples_.size())) return false;
+  if (double(deviation_.turnedOver.size()) > kFewTurned * double(samples_.size())) return false;
   if (deviation_.max <= tolerance_ || early || corrections_ >= kMaxCorrections) return false;
   return corrections_ == 0 || deviation_.max <= kCorrectionPays * previous_.max ||
          deviation_.rms <= kCorrectionPays * previous_.rms;
@@ -232,9 +244,10 @@ bool FitRounds::correctionPays() const {
 void FitRounds::refine() {
   if (failing_.empty()) {
     // Within tolerance, but turned over somewhere.
+    if (insertKnots()) return;
     if (++stiffened_ > 3)
       throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
-                       region_.name, samples_[std::max(0, deviation_.firstTurned)].point);
+                       region_.name, turnedPoint_);
     stiffen(30);
     return;
   }

@@ -48,11 +48,16 @@ class FitRounds {
   virtual const std::vector<std::array<int, 3>>& cells() const = 0;
   virtual std::optional<std::vector<SplineSurface>> leastSquares(
       const std::vector<std::vector<Datum>>& data) const = 0;
-  /// The foot of a point, from a place near it; `start` is that place as seen from the foot's chart.
-  virtual FitPlace foot(const Eigen::Vector3d& p, const FitPlace& from, FitPlace& start) const = 0;
+  struct Foot {
+    FitPlace at, start;    ///< `start`: where the search began, as seen from the foot's chart
+    bool limited = false;  ///< a crease ended the way to it
+  };
+  /// The foot of a point, from a place near it.
+  virtual Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const = 0;
   /// Whether the sample's parameter is not to be corrected.
   virtual bool isHeld(const SurfaceSample&) const { return false; }
-  /// Knots where samples fail; false where none can be inserted.
+  /// Knots where samples fail, and where others than these are turned over for want of them; false where none
+  /// can be inserted.
   virtual bool insertKnots() = 0;
   /// Called before knots are inserted where the refinement before brought little.
   virtual void giveWay() {}
@@ -64,7 +69,7 @@ class FitRounds {
   FittedSurface result_;
   std::vector<SurfaceSample> samples_;
   std::vector<std::array<int, 3>> cells_;
-  std::vector<FitPlace> failing_;
+  std::vector<FitPlace> failing_, turned_;
   Fairness fairness_;
   double narrowest_ = 0;  ///< knot interval, quads
 
@@ -81,6 +86,9 @@ class FitRounds {
   void solve();
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
+  static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
+                                      const std::vector<int>& chosen);
+  void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
   static void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples);
   void correct();
   void chooseParameters();
@@ -99,6 +107,7 @@ class FitRounds {
   const Policy policy_;
   std::optional<FittedSurface> kept_;  ///< within what is enough
   Deviation deviation_, previous_;
+  Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over
   std::vector<FitPlace> feet_;
   std::vector<double> emphasis_;  ///< by sample: factor of its weight
   State beforeCorrection_;

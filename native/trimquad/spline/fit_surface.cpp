@@ -115,9 +115,8 @@ class SurfaceFit : public FitRounds {
     if (!surface) return {};
     return std::vector{std::move(*surface)};
   }
-  FitPlace foot(const Eigen::Vector3d& p, const FitPlace& from, FitPlace& start) const override {
-    start = from;
-    return {0, result_.surfaces[0].footPoint(p, from.parameter, kFootStep)};
+  Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const override {
+    return {{0, result_.surfaces[0].footPoint(p, from.parameter, kFootStep)}, from};
   }
   bool insertKnots() override {
     std::vector<Eigen::Vector2d> failing;
@@ -137,10 +136,12 @@ FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOpti
     throw inputError("fit", "the tolerance must be a positive number");
   if (options.degree < 2 || options.degree > 5) throw inputError("fit", "the degree must be 2, 3, 4 or 5");
   auto single = singleChart(map);
-  if (!single || std::any_of(map.aligned.begin(), map.aligned.end(),
-                             [&](EdgeHandle e) { return !map.mesh.is_boundary(e); }))
-    return fitLayout(region, map, layout(map, progress), options, progress);
-  Chart unrolled = std::move(*single);
+  if (!single || !options.bisections.empty() ||
+      std::any_of(map.aligned.begin(), map.aligned.end(),
+                  [&](EdgeHandle e) { return !map.mesh.is_boundary(e); }))
+    return fitLayout(region, map, layout(map, options.bisections, progress), options, progress);
+  Chart unrolled = options.smallestRectangle && !single->period ? turnedToSmallestRectangle(*single, map.mesh)
+                                                                : std::move(*single);
   const double seam = unrolled.period ? unrolled.scale.toQuads(seamOf(map, unrolled)) : 0;
   FittedSurface fitted = SurfaceFit(region, map, options, unrolled, seam, progress).run();
   fitted.surface = std::move(fitted.surfaces[0]);

@@ -11,8 +11,13 @@ namespace trimquad {
 struct FitOptions {
   double tolerance = 1e-3;  ///< largest distance between surface and region, model units
   double enough = 0;        ///< taken where `tolerance` cannot be reached; at least `tolerance`
-  int degree = 3;           ///< 2..5
-  int threads = 1;          ///< the result does not depend on it
+  /// Whether the rectangle of a single surface lies as fits its region best, not along the grid.
+  bool smallestRectangle = false;
+  /// Charts to cut in two, again and again: by round, indices of the layout of the round before. Regions for
+  /// one chart are cut as chart 0.
+  std::vector<std::vector<int>> bisections = {};
+  int degree = 3;   ///< 2..5
+  int threads = 1;  ///< the result does not depend on it
 };
 
 /// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else

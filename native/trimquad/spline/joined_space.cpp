@@ -256,7 +256,7 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
     progress.check();
     Fairness here = fairness;
     here.stiffAt = corners[c];
-    here.stiffReach = kStiffReach;
+    here.stiffReach = stiffReach;
     charts[c].addNormalEquations(data[c], here, middle, offset[c], entries, rhs);
   }
   const auto rows = conditions();

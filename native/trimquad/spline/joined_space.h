@@ -9,9 +9,6 @@
 
 namespace trimquad {
 
-/// How far from a singularity narrow knot rectangles count in full towards fairness, quads.
-inline constexpr double kStiffReach = 0.25;
-
 /// Splines over all charts of a layout, one tensor-product space each, that agree along the borders.
 class JoinedSpace {
  public:
@@ -21,6 +18,8 @@ class JoinedSpace {
   /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
   /// quad^2 of surface.
   double tangentWeight = 3;
+  /// How far from a singularity narrow knot rectangles count in full towards fairness, quads.
+  double stiffReach = 0.25;
 
   /// By chart of the layout: its corners in singularities.
   std::vector<std::vector<Eigen::Vector2d>> singularCorners() const;

@@ -221,9 +221,10 @@ const Layout::Piece& Layout::pieceAt(FaceHandle f, const Eigen::Vector2d& x) con
   return *best;
 }
 
-Layout layout(const GridMap& map, const Progress& progress) {
+Layout layout(const GridMap& map, const std::vector<std::vector<int>>& bisections, const Progress& progress) {
   const CellGraph graph(map, progress);
-  const auto charts = joined(graph, blocks(graph, progress), progress);
+  auto charts = joined(graph, blocks(graph, progress), progress);
+  for (const auto& chosen : bisections) charts = bisected(graph, charts, chosen);
   Layout result;
   result.scale = map.scale;
   Outlines(graph, charts, result);

@@ -87,6 +87,8 @@ struct Layout {
 /// charts joined as long as their union lies in the plane one to one and fills a good part of its bounding
 /// box. All decisions are exact. Throws Error(Stage, "fit") where there is no such layout: around a
 /// singularity with less than a half turn.
-Layout layout(const GridMap& map, const Progress& progress);
+/// \param bisections by round: indices of charts of the round before that are cut in two where the surface
+/// bends most
+Layout layout(const GridMap& map, const std::vector<std::vector<int>>& bisections, const Progress& progress);
 
 }  // namespace trimquad

@@ -33,6 +33,9 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
     }
     for (const auto v : mesh.fv_range(f)) vertexNormal_[v.idx()] += (p[1] - p[0]).cross(p[2] - p[0]);
   }
+  bendsAt_.assign(mesh.n_edges(), false);
+  for (const auto e : mesh.edges()) bendsAt_[e.idx()] = mesh.is_boundary(e);
+  for (const auto e : map.aligned) bendsAt_[e.idx()] = true;
   collectSingularCorners();
   const std::size_t small = extents.size() / kSmallTriangles;
   std::nth_element(extents.begin(), extents.begin() + small, extents.end());
@@ -197,7 +200,7 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
   for (const auto f : mesh.faces()) {
     HalfedgeHandle h = mesh.halfedge_handle(f);
     for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
-      if (!mesh.is_boundary(mesh.opposite_halfedge_handle(h))) continue;
+      if (!bendsAt_[mesh.edge_handle(h).idx()]) continue;
       int parts = 1;
       forEachChart(f, [&](int chart, const Transition& toChart) {
         const Corners c = corners(f, toChart);

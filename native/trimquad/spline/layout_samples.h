@@ -17,8 +17,8 @@ class LayoutSamples {
  public:
   LayoutSamples(const Region& region, const GridMap& map, const Layout& layout, const Progress& progress);
 
-  /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary. `control` samples lie at
-  /// other places and are denser.
+  /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary and on both sides of
+  /// aligned lines. `control` samples lie at other places and are denser.
   std::vector<SurfaceSample> make(const JoinedSpace& space, bool control, const Progress& progress);
   /// Of the samples made last: small triangles between samples of one chart, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
@@ -48,6 +48,7 @@ class LayoutSamples {
     double exponent;  ///< the surface's distance from the singularity grows like this power of the map's
   };
   double area_ = 0, extent_ = 0;
+  std::vector<bool> bendsAt_;                          ///< by edge: on the boundary or an aligned line
   std::vector<std::vector<SingularCorner>> singular_;  ///< by chart
   std::vector<std::array<int, 3>> cells_;
   std::vector<Eigen::Vector3d> vertexPoint_, vertexNormal_;  ///< on the true surface

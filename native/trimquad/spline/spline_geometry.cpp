@@ -190,11 +190,16 @@ double SplineSurface::wrappedU(double u) const {
   return u < lastU() ? std::max(u, firstU()) : firstU();
 }
 
-Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, Eigen::Vector2d guess,
-                                         double smallestStep) const {
-  const auto admissible = [&](Eigen::Vector2d x) -> Eigen::Vector2d {
-    return {closedU ? wrappedU(x[0]) : std::clamp(x[0], firstU(), lastU()),
-            std::clamp(x[1], firstV(), lastV())};
+Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, const Eigen::Vector2d& guess,
+                                         double step) const {
+  return footPoint(p, guess, {Eigen::Vector2d(firstU(), firstV()), Eigen::Vector2d(lastU(), lastV())}, step);
+}
+
+Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, const Eigen::Vector2d& guess,
+                                         const Eigen::AlignedBox2d& part, double smallestStep) const {
+  const Eigen::Vector2d &low = part.min(), &high = part.max();
+  const auto admissible = [&](const Eigen::Vector2d& x) -> Eigen::Vector2d {
+    return {closedU ? wrappedU(x[0]) : std::clamp(x[0], low[0], high[0]), std::clamp(x[1], low[1], high[1])};
   };
   constexpr int maxSteps = 40;
   Eigen::Vector2d x = admissible(guess);
@@ -210,10 +215,10 @@ Eigen::Vector2d SplineSurface::footPoint(const Eigen::Vector3d& p, Eigen::Vector
     hessian(0, 1) += d.dot(jet.suv);
     hessian(1, 0) += d.dot(jet.suv);
     hessian(1, 1) += d.dot(jet.svv);
-    // A parameter that stands on the domain's end and would leave it stays there.
+    // A parameter that stands on the part's end and would leave it stays there.
     const bool holdU =
-        !closedU && ((x[0] <= firstU() && gradient[0] > 0) || (x[0] >= lastU() && gradient[0] < 0));
-    const bool holdV = (x[1] <= firstV() && gradient[1] > 0) || (x[1] >= lastV() && gradient[1] < 0);
+        !closedU && ((x[0] <= low[0] && gradient[0] > 0) || (x[0] >= high[0] && gradient[0] < 0));
+    const bool holdV = (x[1] <= low[1] && gradient[1] > 0) || (x[1] >= high[1] && gradient[1] < 0);
     for (const auto& [hold, k] : {std::pair{holdU, 0}, std::pair{holdV, 1}})
       if (hold) {
         gradient[k] = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <span>
 #include <vector>
@@ -90,7 +90,12 @@ struct SplineSurface {
   /// inside the domain (wrapping around where the surface is closed in u: u is in [firstU, lastU)).
   /// \param step smallest last step, relative to the parameters; 1e-6 leaves the distance exact up to
   /// rounding
-  Eigen::Vector2d footPoint(const Eigen::Vector3d& p, Eigen::Vector2d guess, double step = 1e-15) const;
+  Eigen::Vector2d footPoint(const Eigen::Vector3d& p, const Eigen::Vector2d& guess,
+                            double step = 1e-15) const;
+  /// The same inside a part of the domain, which may be a segment of a line u or v = const; not for closed
+  /// surfaces.
+  Eigen::Vector2d footPoint(const Eigen::Vector3d& p, const Eigen::Vector2d& guess,
+                            const Eigen::AlignedBox2d& part, double step) const;
 
   /// The exact curve v -> S(u, v).
   SpaceCurve curveAtU(double u) const;

@@ -42,6 +42,7 @@ struct SplineFace {
   SplineSurface surface;
   std::vector<std::vector<SplineCoedge>> loops;
   int region;
+  int chart = 0;  ///< of the region's layout
 };
 
 /// Trimmed B-spline faces that share their edges: what a region, or a whole model, is rebuilt as.

@@ -420,8 +420,10 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
 
   const auto appendFaces = [&](int sheet, const std::vector<PieceLoop>& loops) {
     const int r = sheetRegion_[sheet];
-    for (auto& face : trimmedFaces(sheets_[sheet], loops, r, model_.regions[r].name, result))
+    for (auto& face : trimmedFaces(sheets_[sheet], loops, r, model_.regions[r].name, result)) {
+      face.chart = sheet - firstSheet_[r];
       result.faces.push_back(std::move(face));
+    }
   };
   // By sheet, loop and stretch: the edges along the region's boundary.
   std::map<std::array<int, 3>, PieceLoop> stretches;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <string>
 
 #include "spline/analytic_region.h"
@@ -126,6 +127,21 @@ TEST(Chart, singularitiesAreRefused) {
         if (soup.triangles[f.idx()][k] == map.mesh.from_vertex_handle(h).idx())
           map.corner[h.idx()] = image[k];
   EXPECT_NE(refusal(map).find("singularity"), std::string::npos);
+}
+
+TEST(Chart, aRectangleAtAnAngleIsTurnedIntoItsOwnDirections) {
+  auto a = flat([](double, double) { return true; });
+  const double angle = 33 * M_PI / 180;
+  for (auto& x : a.map.corner) {
+    const Eigen::Vector2d y = a.map.scale.toQuads(x);
+    x = a.map.scale.round(Eigen::Vector2d(4 * std::cos(angle) * y[0] - std::sin(angle) * y[1],
+                                          4 * std::sin(angle) * y[0] + std::cos(angle) * y[1]));
+  }
+  const auto turned = turnedToSmallestRectangle(chart(a.map), a.map.mesh);
+  Eigen::AlignedBox2d box;
+  for (const auto f : a.map.mesh.faces())
+    for (const auto h : a.map.mesh.fh_range(f)) box.extend(turned.scale.toQuads(turned.corner[h.idx()]));
+  EXPECT_NEAR(box.volume(), 400, 1e-3);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "quads/sample_maps.h"
@@ -23,8 +25,8 @@ double imageArea(const GridMap& map) {
 
 /// Outlines close, enclose the area of the map, and every border is used once in each direction by the
 /// charts that it names; singularities lie on borders.
-Layout checked(const GridMap& map) {
-  const Layout result = layout(map, Progress());
+Layout checked(const GridMap& map, const std::vector<std::vector<int>>& bisections = {}) {
+  const Layout result = layout(map, bisections, Progress());
   double area = 0;
   std::vector<std::set<bool>> uses(result.borders.size());
   for (int c = 0; c < int(result.charts.size()); ++c)
@@ -103,6 +105,27 @@ TEST(Layout, aFlatSheetIsOneChart) {
       12, 12, [](int i, int j) { return Eigen::Vector2d(0.37 * i, 0.41 * j); },
       [](int i, int j) { return i > 3 && i < 8 && j > 2 && j < 7; }));
   EXPECT_EQ(checked(map).charts.size(), 1u);
+}
+
+TEST(Layout, aChartIsCutInTwoWhereItBendsMost) {
+  // Flat but for a half cylinder over 7 < u < 11.
+  const auto map = samples::planarMap(samples::sheet(
+      16, 12, [](int i, int j) { return Eigen::Vector2d(i + 0.1, j + 0.2); },
+      [](int, int) { return false; }));
+  GridMap bent = map;
+  for (const auto v : bent.mesh.vertices()) {
+    const auto p = bent.mesh.point(v);
+    const double turn = M_PI * std::clamp((p[0] - 7) / 4, 0.0, 1.0), r = 4 / M_PI;
+    const double flat = std::min(p[0], 7.0), beyond = std::max(p[0] - 11, 0.0);
+    bent.mesh.set_point(v, {flat + r * std::sin(turn) - beyond, p[1], r * (1 - std::cos(turn))});
+  }
+  EXPECT_EQ(checked(bent).charts.size(), 1u);
+  const Layout cut = checked(bent, {{0}});
+  ASSERT_EQ(cut.charts.size(), 2u);
+  ASSERT_EQ(cut.borders.size(), 1u);
+  EXPECT_EQ(cut.borders[0].start[0][0], 9);
+  EXPECT_EQ(cut.borders[0].end[0][0], 9);
+  EXPECT_EQ(checked(bent, {{0}, {0, 1}}).charts.size(), 4u);
 }
 
 }  // namespace

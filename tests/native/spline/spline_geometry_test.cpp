@@ -128,6 +128,18 @@ TEST(SplineGeometry, footPointIsOrthogonalInsideAndOptimalOnTheBorder) {
     EXPECT_GE((s.point(4, v) - beyond).norm(), (s.point(4, x[1]) - beyond).norm() - 1e-9);
 }
 
+TEST(SplineGeometry, footPointOnASegmentIsTheClosestPointOfIt) {
+  const auto s = randomSurface(3, 3, 7);
+  const Eigen::AlignedBox2d segment(Eigen::Vector2d(1, 0.5), Eigen::Vector2d(2, 0.5));
+  for (const double u : {0.6, 1.2, 1.7, 2.4}) {
+    const Eigen::Vector3d p = s.point(u, 0.7);
+    const auto x = s.footPoint(p, {std::clamp(u, 1.0, 2.0), 0.5}, segment, 1e-15);
+    EXPECT_TRUE(segment.contains(x));
+    for (double t = 1; t <= 2; t += 0.01)
+      EXPECT_GE((s.point(t, 0.5) - p).norm(), (s.point(x[0], x[1]) - p).norm() - 1e-9);
+  }
+}
+
 TEST(SplineGeometry, footPointWrapsAroundAClosedSurface) {
   // A cylinder-like closed surface: uniform quadratic poles on a circle, made clamped by knot insertion.
   const int n = 8;
