@@ -96,8 +96,8 @@ class Result:
     """A finished conversion.
 
     source, options (resolved), model, regions (RegionResult each), spline (the B-spline faces and their shared edges,
-    or None where no region got that far), native_shape (the same assembled), warnings (lines for the user), seconds (of
-    stages of the whole model).
+    or None where no region got that far), native_shape (the same assembled), faults (what OpenCASCADE finds wrong with
+    it, "Edge7, Face2: SelfIntersect"), warnings (lines for the user), seconds (of stages of the whole model).
     """
 
     def __init__(self, source, options, model):
@@ -108,6 +108,7 @@ class Result:
         self.regions = [RegionResult(region) for region in model.regions]
         self.spline = self.native_shape = None
         self.repairs = {}
+        self.faults = []
         self.warnings = []
         self.shape_counts = {}
         self.seconds = {}
@@ -176,6 +177,7 @@ def _convert(source, options, progress):
     result.seconds["tessellate"] = time.monotonic() - started
     _map_regions(result, progress)
     _trim(result, progress)
+    _check(result, progress)
     return result
 
 
@@ -436,3 +438,18 @@ def _trim(result, progress):
     result.seconds["trim"] = time.monotonic() - started
     if progress.cancelled:
         raise cancelled()
+
+
+def _check(result, progress):
+    """OpenCASCADE's check of the whole model, but for faces that cross others: that can take longer than all the rest."""
+    if result.native_shape is None:
+        return
+    started = time.monotonic()
+    with progress.stage("check"):
+        result.faults = load().shape_faults(result.native_shape, False)
+    result.seconds["trim"] += time.monotonic() - started
+    if result.faults:
+        shown = "; ".join(result.faults[:3]) + ("; ..." if len(result.faults) > 3 else "")
+        result.warnings.append(
+            f"OpenCASCADE finds faults in the B-spline model ({len(result.faults)}: {shown}); use a smaller tolerance"
+        )

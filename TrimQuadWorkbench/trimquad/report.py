@@ -30,6 +30,7 @@ def report(result):
         "options": {k: v for k, v in sorted(vars(result.options).items())},
         "regions": regions,
         "curves": result.model.curves,
+        "faults": result.faults,
         "loose_edges": result.spline and result.spline.loose_edges,
         "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions), 6),
         "peak_memory_mb": _peak_memory_mb(),

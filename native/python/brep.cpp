@@ -43,6 +43,7 @@ void bindBrep(py::module_& m) {
   m.def("assemble", &assemble, py::arg("spline"), Released());
   m.def("face_faults", &faceFaults, py::arg("spline"), Released(),
         "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone");
+  m.def("shape_faults", &faults, py::arg("shape"), py::arg("crossings"), Released());
   m.def("write_step", &writeStep, py::arg("shape"), py::arg("path"), Released());
   m.def("write_brep", &writeBrep, py::arg("shape"), py::arg("path"), Released());
 }

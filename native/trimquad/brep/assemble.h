@@ -17,7 +17,9 @@ Shape assemble(const SplineModel& model);
 /// What is wrong with the shape, one line each ("Edge7: InvalidCurveOnSurface"), empty where nothing is:
 /// OpenCASCADE's validity check, and its check of arguments for boolean operations (self-interference, small
 /// edges, continuity, curves on surfaces), as FreeCAD's "Check geometry" runs them.
-std::vector<std::string> faults(const Shape& shape);
+/// \param crossings whether self-interference is looked for, which can take minutes where faces of a model
+/// touch without meeting in an edge
+std::vector<std::string> faults(const Shape& shape, bool crossings = true);
 
 /// The same for each face of the model alone, in the model's order.
 std::vector<std::vector<std::string>> faceFaults(const SplineModel& model);

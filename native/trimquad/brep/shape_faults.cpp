@@ -139,7 +139,7 @@ void appendStatus(const BRepCheck_ListOfStatus& statuses, const std::string& whe
 
 }  // namespace
 
-std::vector<std::string> faults(const Shape& shape) {
+std::vector<std::string> faults(const Shape& shape, bool crossings) {
   return guarded(Error::Kind::Stage, "write", "the shape cannot be checked", [&] {
     std::vector<std::string> found;
     // The analysers may change tolerances of what they check.
@@ -164,7 +164,7 @@ std::vector<std::string> faults(const Shape& shape) {
       BOPAlgo_ArgumentAnalyzer analyzer;
       analyzer.SetShape1(copy);
       analyzer.ArgumentTypeMode() = true;
-      analyzer.SelfInterMode() = true;
+      analyzer.SelfInterMode() = crossings;
       analyzer.SmallEdgeMode() = true;
       analyzer.RebuildFaceMode() = true;
       analyzer.ContinuityMode() = true;

@@ -194,7 +194,7 @@ std::vector<BoundaryRun> boundaryRuns(const Model& model, int regionIndex, const
         } else {
           const auto [it, isNew] = cornerOfPoint.try_emplace(*part.endPoint, corners);
           if (isNew) splits.push_back({run.curve, now.t.back(), corners++, regionIndex, *part.endPoint});
-          previous = {it->second, -1 - *part.endPoint};
+          previous = {it->second, -1 - it->second, part.endPoint};
         }
         now.end = previous;
         alongCurve(now);
@@ -232,7 +232,7 @@ void cutAtSplits(const Model& model, const std::vector<CurveSplit>& splits, std:
       keepUpTo(run.points, point);
       keepUpTo(run.t, split.t);
       keepUpTo(run.uv, uv);
-      rest.start = run.end = {split.corner, -1 - split.point};
+      rest.start = run.end = {split.corner, -1 - split.corner};
       runs.insert(runs.begin() + (run.forward ? r + 1 : r), rest);
       break;
     }

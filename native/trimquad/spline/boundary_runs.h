@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "trimquad/mesh/region.h"
@@ -10,9 +11,11 @@
 namespace trimquad {
 
 /// A vertex at the end of a boundary run: which corner, and which vertex of the region (its boundary may
-/// touch itself in one corner). Corners after those of the model are places where charts meet.
+/// touch itself in one corner). Corners after those of the model are places where charts meet, of this region
+/// or of the one across; they have no vertex (negative, by corner).
 struct RunEnd {
   int corner, vertex;
+  std::optional<int> point = {};  ///< of the region's layout, where its own charts meet in such a corner
 };
 
 /// A stretch of a chart's boundary along one model curve, from corner to corner.

@@ -32,6 +32,18 @@ constexpr int kPatience = 4;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
 
+TriangleTree triangleTree(const SurfaceMesh& mesh) {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<std::array<int, 3>> triangles;
+  for (const auto v : mesh.vertices()) points.push_back(mesh.point(v));
+  for (const auto f : mesh.faces()) {
+    auto& corners = triangles.emplace_back();
+    int k = 0;
+    for (const auto v : mesh.fv_range(f)) corners[k++] = v.idx();
+  }
+  return {std::move(points), std::move(triangles)};
+}
+
 std::string shortNumber(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
@@ -47,6 +59,7 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       enough_(std::max(options.tolerance, options.enough)),
       threads_(options.threads),
       progress_(progress),
+      triangles_(triangleTree(region.mesh)),
       policy_(policy) {}
 
 void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
@@ -137,11 +150,17 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
       const SplineLine &u = space(at.chart).u, &v = space(at.chart).v;
       const bool near =
           move[0] <= u.width(u.spanOf(at.parameter[0])) && move[1] <= v.width(v.spanOf(at.parameter[1]));
-      turnedOver[i] = !s.agrees(normal);
+      turnedOver[i] = !s.agrees(normal) && !facesLikewise(jet.s, normal);
       feet[i] = near && !limited && !turnedOver[i] && !isHeld(s) ? at : from;
     }
   });
   return deviationOf(samples, turnedOver);
+}
+
+/// Whether the region faces that way within the tolerance of a point: small curls of it may be flattened.
+bool FitRounds::facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const {
+  const auto hit = triangles_.closestFacing(p, normal);
+  return hit && hit->squaredDistance <= tolerance_ * tolerance_;
 }
 
 /// Of the samples that lie farther away than that.

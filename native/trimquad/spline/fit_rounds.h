@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/aabb_tree.h"
 #include "trimquad/spline/deviation.h"
 #include "trimquad/spline/fit_surface.h"
 #include "trimquad/spline/spline_space.h"
@@ -84,6 +85,7 @@ class FitRounds {
   FittedSurface rounds();
   void takeSamples();
   void solve();
+  bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
@@ -104,6 +106,7 @@ class FitRounds {
   int poles() const;
   Error unreachable() const;
 
+  const TriangleTree triangles_;  ///< of the region
   const Policy policy_;
   std::optional<FittedSurface> kept_;  ///< within what is enough
   Deviation deviation_, previous_;

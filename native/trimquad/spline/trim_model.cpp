@@ -24,6 +24,7 @@ constexpr double kShortestEdge = 10 * kSmallestTolerance;
 /// A boundary vertex of a chart that is a corner of the model, or a place where charts meet.
 struct CornerUse {
   int corner, sheet, vertex;
+  std::optional<int> layoutPoint;  ///< of its region, where that is known
   Eigen::Vector3d point;
   Eigen::Vector2d guess;
   Eigen::Vector2d at;  ///< on the sheet
@@ -97,7 +98,7 @@ class ModelTrimmer {
   }
 
   int cornerUse(const BoundaryRun& run, const RunEnd& end) const {
-    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}};
+    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}, {}};
     const auto found =
         std::lower_bound(uses_.begin(), uses_.end(), wanted,
                          [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
@@ -227,9 +228,20 @@ void ModelTrimmer::collectRuns() {
 
 void ModelTrimmer::placeCorners() {
   for (const auto& run : runs_) {
-    uses_.push_back(
-        {cornerOf(run.start), sheetOf(run), run.start.vertex, run.points.front(), run.uv.front(), {}});
-    uses_.push_back({cornerOf(run.end), sheetOf(run), run.end.vertex, run.points.back(), run.uv.back(), {}});
+    uses_.push_back({cornerOf(run.start),
+                     sheetOf(run),
+                     run.start.vertex,
+                     run.start.point,
+                     run.points.front(),
+                     run.uv.front(),
+                     {}});
+    uses_.push_back({cornerOf(run.end),
+                     sheetOf(run),
+                     run.end.vertex,
+                     run.end.point,
+                     run.points.back(),
+                     run.uv.back(),
+                     {}});
   }
   std::sort(uses_.begin(), uses_.end(),
             [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
@@ -281,7 +293,7 @@ void ModelTrimmer::placeCorners() {
 
 /// The point of its region's layout that a corner is, or -1.
 int ModelTrimmer::layoutPoint(const CornerUse& use) const {
-  if (use.vertex < 0) return -1 - use.vertex;
+  if (use.layoutPoint || use.vertex < 0) return use.layoutPoint.value_or(-1);
   const auto& points = fitted_[sheetRegion_[use.sheet]]->layout->points;
   for (int p = 0; p < int(points.size()); ++p)
     if (points[p].vertex.is_valid() && points[p].vertex.idx() == use.vertex) return p;
