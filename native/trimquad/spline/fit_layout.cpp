@@ -87,7 +87,12 @@ class LayoutFit : public FitRounds {
   int charts() const override { return int(space_.charts.size()); }
   const SplineSpace& space(int chart) const override { return space_.charts[chart]; }
   std::vector<SurfaceSample> makeSamples(bool control) override {
-    return source_.make(space_, control, progress_);
+    auto samples = source_.make(space_, control, progress_);
+    if (control) return samples;
+    std::vector<std::vector<Datum>> data(charts());
+    for (const auto& s : samples) data[s.chart].push_back({s.parameter, s.point, s.weight});
+    space_.alignTangents(data);
+    return samples;
   }
   const std::vector<std::array<int, 3>>& cells() const override { return source_.cells(); }
   std::optional<std::vector<SplineSurface>> leastSquares(

@@ -18,6 +18,11 @@ constexpr int kIdleMultiplierSteps = 8;
 constexpr double kRounding = 1e-13;
 /// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
 constexpr double kTangentReach = 2;
+/// Tangents at a singularity are taken from data this close to it, quads; from so many at least.
+constexpr double kTangentRadius = 1;
+constexpr int kFewestForTangent = 8;
+/// Borders that leave a singularity under a smaller angle are spread evenly, radians.
+constexpr double kSmallestAngle = 0.3;
 constexpr double kBeyondBoundary = 0.5;  ///< quads
 constexpr double kSame = 1e-9;           ///< quads
 
@@ -80,8 +85,9 @@ std::vector<int> JoinedSpace::offsets() const {
   return result;
 }
 
-void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>& offset,
+void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
                             std::vector<Condition>& conditions) const {
+  const auto& border = layout_.borders[index];
   const SplineSpace* space[2];
   std::vector<ChartEvaluator> side;
   std::vector<double> breaks[2];
@@ -109,8 +115,7 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
   ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kSame; }),
              ends.end());
 
-  // How far the influence of a singularity at an end reaches, and the cosine of the angle between
-  // neighbouring lines there once the surface is flattened.
+  // How far the influence of a singularity at an end reaches.
   const auto reach = [&](bool atStart) {
     double farthest = 0;
     for (int k : {0, 1}) {
@@ -125,22 +130,22 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
   };
   const double reachStart = startPoint.isSingular() ? reach(true) : 0,
                reachEnd = endPoint.isSingular() ? reach(false) : 0;
-  const auto cosine = [](const Layout::Point& p) { return std::cos(2 * M_PI / p.quarters); };
-  const auto tangentFactor = [&](double s) {
-    double c = 0;
-    if (reachStart > 0 && s < reachStart) c += cosine(startPoint) * std::pow(1 - s / reachStart, 2);
-    // There the direction along the border points towards the singularity.
-    if (reachEnd > 0 && length - s < reachEnd)
-      c -= cosine(endPoint) * std::pow(1 - (length - s) / reachEnd, 2);
-    return c;
-  };
-  const auto acrossAt = [&](double s, double factor) {
+  const Gluing atStart = gluing(index, true), atEnd = gluing(index, false);
+  // The derivatives into both charts add up to nothing, but for the one along the border next to
+  // singularities.
+  const auto acrossAt = [&](double s) {
+    const double w0 = reachStart > 0 && s < reachStart ? std::pow(1 - s / reachStart, 2) : 0,
+                 w1 = reachEnd > 0 && length - s < reachEnd ? std::pow(1 - (length - s) / reachEnd, 2) : 0;
+    // Seen from the end, the charts change sides and the border runs the other way.
+    const double first = 1 + w0 * (atStart.left - 1) + w1 * (atEnd.right - 1),
+                 second = 1 + w0 * (atStart.right - 1) + w1 * (atEnd.left - 1),
+                 along = w0 * atStart.along - w1 * atEnd.along;
     const Eigen::Vector2d x0 = border.start[0] + s * along0;
     const Eigen::Vector2d x1 = border.start[1] + s * along1;
     Condition condition;
-    side[0].appendAlong(x0, over0, -1, condition.terms);
-    side[1].appendAlong(x1, over1, 1, condition.terms);
-    if (factor != 0) side[0].appendAlong(x0, along0, -2 * factor, condition.terms);
+    side[0].appendAlong(x0, over0, -first, condition.terms);
+    side[1].appendAlong(x1, over1, second, condition.terms);
+    if (along != 0) side[0].appendAlong(x0, along0, -along, condition.terms);
     return condition;
   };
 
@@ -156,16 +161,16 @@ void JoinedSpace::addBorder(const Layout::Border& border, const std::vector<int>
       conditions.push_back(std::move(equal));
       if (border.feature) continue;
       const bool near = (reachStart > 0 && s < reachStart) || (reachEnd > 0 && length - s < reachEnd);
-      Condition smooth = acrossAt(s, tangentFactor(s));
+      Condition smooth = acrossAt(s);
       smooth.weight = (near ? tangentWeight : kExactWeight) * width;
       smooth.exact = !near;
       conditions.push_back(std::move(smooth));
     }
   }
   if (border.feature) return;
-  for (const bool atStart : {true, false})
-    if ((atStart ? reachStart : reachEnd) > 0) {
-      Condition flat = acrossAt(atStart ? 0 : length, tangentFactor(atStart ? 0 : length));
+  for (const bool start : {true, false})
+    if ((start ? reachStart : reachEnd) > 0) {
+      Condition flat = acrossAt(start ? 0 : length);
       flat.weight = kExactWeight;
       flat.exact = true;
       conditions.push_back(std::move(flat));
@@ -219,6 +224,116 @@ Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions
   return best;
 }
 
+JoinedSpace::Gluing JoinedSpace::gluing(int border, bool atStart) const {
+  const auto found = gluing_.find({border, atStart});
+  if (found != gluing_.end()) return found->second;
+  const auto& point =
+      layout_.points[atStart ? layout_.borders[border].startPoint : layout_.borders[border].endPoint];
+  return {1, 1, point.isSingular() ? 2 * std::cos(2 * M_PI / point.quarters) : 0};
+}
+
+namespace {
+
+/// The chart to the left or right of a border, as seen away from one of its ends.
+struct Sector {
+  int chart;
+  Eigen::Vector2d corner, along, inward;
+};
+
+Sector sectorOf(const Layout::Border& border, bool atStart, bool left) {
+  const int side = atStart == left ? 0 : 1;
+  const Eigen::Vector2d &from = atStart ? border.start[side] : border.end[side],
+                        &to = atStart ? border.end[side] : border.start[side];
+  const Eigen::Vector2d along = (to - from) / border.length();
+  const Eigen::Vector2d turned(-along[1], along[0]);
+  return {border.chart[side], from, along, left ? turned : Eigen::Vector2d(-turned)};
+}
+
+/// Least-squares derivative of the surface from `origin` into a sector, along its border; none where too few
+/// data determine it.
+std::optional<Eigen::Vector3d> tangentIn(const Sector& sector, const std::vector<Datum>& data,
+                                         const Eigen::Vector3d& origin, double radius) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Matrix<double, 2, 3> rhs = Eigen::Matrix<double, 2, 3>::Zero();
+  int count = 0;
+  for (const auto& d : data) {
+    const Eigen::Vector2d away = d.parameter - sector.corner;
+    const Eigen::Vector2d x(away.dot(sector.along), away.dot(sector.inward));
+    if (x.minCoeff() < 0 || x.norm() > radius || x.norm() == 0) continue;
+    normal += d.weight * x * x.transpose();
+    rhs += d.weight * x * (d.point - origin).transpose();
+    ++count;
+  }
+  if (count < kFewestForTangent || !(normal.determinant() > 1e-6 * std::pow(normal.trace(), 2))) return {};
+  return Eigen::Vector3d((normal.inverse() * rhs).row(0));
+}
+
+}  // namespace
+
+void JoinedSpace::alignTangents(const std::vector<std::vector<Datum>>& data) {
+  gluing_.clear();
+  for (int p = 0; p < int(layout_.points.size()); ++p) {
+    if (!layout_.points[p].isSingular()) continue;
+    // Borders around the singularity, counter-clockwise: the sector to the left of each is to the right of
+    // the next.
+    struct Ray {
+      int border;
+      bool atStart;
+      Sector left, right;
+      Eigen::Vector3d tangent;
+    };
+    std::vector<Ray> rays;
+    double radius = kTangentRadius;
+    for (int b = 0; b < int(layout_.borders.size()); ++b)
+      for (const bool atStart : {true, false}) {
+        const auto& border = layout_.borders[b];
+        if ((atStart ? border.startPoint : border.endPoint) != p) continue;
+        radius = std::min(radius, border.length() / 2);
+        rays.push_back({b, atStart, sectorOf(border, atStart, true), sectorOf(border, atStart, false), {}});
+      }
+    const int n = int(rays.size());
+    std::vector<int> next(n, -1);
+    bool known = n == layout_.points[p].quarters;
+    for (int i = 0; i < n && known; ++i) {
+      for (int j = 0; j < n; ++j)
+        if (rays[j].right.chart == rays[i].left.chart && rays[j].right.corner == rays[i].left.corner &&
+            rays[j].right.inward == rays[i].left.along)
+          next[i] = j;
+      const auto& origin = layout_.points[p].position;
+      const auto left = tangentIn(rays[i].left, data[rays[i].left.chart], origin, radius),
+                 right = tangentIn(rays[i].right, data[rays[i].right.chart], origin, radius);
+      known = next[i] >= 0 && left && right;
+      if (known) rays[i].tangent = (*left + *right) / 2;
+    }
+    if (!known) continue;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    for (int i = 0; i < n; ++i) normal += rays[i].tangent.cross(rays[next[i]].tangent);
+    normal.normalize();
+    const auto area = [&](int i) { return normal.dot(rays[i].tangent.cross(rays[next[i]].tangent)); };
+    for (int i = 0; i < n && known; ++i) {
+      const double angle =
+          std::asin(std::clamp(area(i) / (rays[i].tangent.norm() * rays[next[i]].tangent.norm()), -1.0, 1.0));
+      known = angle > kSmallestAngle;
+    }
+    if (!known) continue;
+    std::vector<int> before(n);
+    for (int i = 0; i < n; ++i) before[next[i]] = i;
+    for (int i = 0; i < n; ++i) {
+      const double ahead = area(i), behind = area(before[i]);
+      Gluing g;
+      g.left = 2 * behind / (ahead + behind);
+      g.right = 2 * ahead / (ahead + behind);
+      const auto inPlane = [&](const Eigen::Vector3d& t) -> Eigen::Vector3d {
+        return t - t.dot(normal) * normal;
+      };
+      const Eigen::Vector3d own = inPlane(rays[i].tangent);
+      g.along =
+          (g.left * rays[next[i]].tangent + g.right * rays[before[i]].tangent).dot(own) / own.squaredNorm();
+      gluing_[{rays[i].border, rays[i].atStart}] = g;
+    }
+  }
+}
+
 std::vector<std::vector<Eigen::Vector2d>> JoinedSpace::singularCorners() const {
   std::vector<std::vector<Eigen::Vector2d>> result(layout_.charts.size());
   for (const auto& border : layout_.borders)
@@ -234,7 +349,7 @@ std::vector<std::vector<Eigen::Vector2d>> JoinedSpace::singularCorners() const {
 std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
   std::vector<Condition> result;
   const auto offset = offsets();
-  for (const auto& border : layout_.borders) addBorder(border, offset, result);
+  for (int b = 0; b < int(layout_.borders.size()); ++b) addBorder(b, offset, result);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,15 +22,20 @@ class JoinedSpace {
   /// How far from a singularity narrow knot rectangles count in full towards fairness, quads.
   double stiffReach = 0.25;
 
+  /// Takes the directions in which borders leave singularities from the data: by least squares over those
+  /// that lie close to a singularity. Without, and where there are too few, they are evenly spread. \param
+  /// data by chart
+  void alignTangents(const std::vector<std::vector<Datum>>& data);
+
   /// By chart of the layout: its corners in singularities.
   std::vector<std::vector<Eigen::Vector2d>> singularCorners() const;
 
   /// The spline surfaces that minimise the sum over all charts of what SplineSpace::leastSquares minimises,
   /// subject to: both sides of a border have the same curve, whatever their knots; they have the same
   /// derivatives across it (in the common chart) away from singularities and off feature lines. Next to a
-  /// singularity, within about a quad, the derivatives of both sides across the border and the
-  /// one along it become linearly dependent, exactly in the singularity and by weighted least squares beyond.
-  /// The conditions hold up to rounding (multipliers).
+  /// singularity, within about two quads, the derivatives of both sides across the border and the one along
+  /// it become linearly dependent, with coefficients from the tangents: exactly in the singularity and by
+  /// weighted least squares beyond. The conditions hold up to rounding (multipliers).
   ///
   /// Beyond the surface's boundary borders go on for half a quad, for trims that leave the region.
   /// \param data by chart. Empty where data and fairness do not determine the surfaces.
@@ -45,12 +51,20 @@ class JoinedSpace {
   };
   static Eigen::MatrixXd satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
                                     Eigen::MatrixXd x, double rounding, const Progress& progress);
+  /// Coefficients of a border at its end in a singularity: of the derivatives into the charts to its left and
+  /// right, and of the one along it, all seen away from the singularity.
+  struct Gluing {
+    double left = 1, right = 1, along = 0;
+  };
+  Gluing gluing(int border, bool atStart) const;
+
   std::vector<int> offsets() const;
   std::vector<Condition> conditions() const;
-  void addBorder(const Layout::Border& border, const std::vector<int>& offset,
-                 std::vector<Condition>& conditions) const;
+  void addBorder(int index, const std::vector<int>& offset, std::vector<Condition>& conditions) const;
 
   const Layout& layout_;
+  std::map<std::pair<int, bool>, Gluing>
+      gluing_;  ///< by border and whether at its start; the others are even
 };
 
 }  // namespace trimquad

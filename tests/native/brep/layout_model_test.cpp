@@ -175,6 +175,24 @@ TEST(LayoutModel, aConeEndsOnItsFreeBoundary) {
   }
 }
 
+TEST(LayoutModel, sectorsOfUnequalWidthMeetSmoothly) {
+  for (const int quarters : {3, 5}) {
+    GridMap map = samples::gridMapOf(samples::cone(quarters, 24, 4.37));
+    sample::bend(map, [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+      const double angle = std::atan2(p[1], p[0]), r = p.head<2>().norm(),
+                   to = angle + 0.45 * std::sin(angle);
+      const Eigen::Vector3d q(r * std::cos(to), r * std::sin(to), 0);
+      return {q[0], q[1], -0.6 * std::sqrt(1 + q.head<2>().squaredNorm())};
+    });
+    const Model model = modelOf(map.mesh);
+    const auto built = build(model, {sample::mapOn(model.regions[0], map)}, 0.006);
+    std::size_t poles = 0;
+    for (const auto& face : built.spline.faces) poles += face.surface.poles.size();
+    EXPECT_LE(poles, 800u) << quarters;
+    EXPECT_LE(largestCrease(built.fitted[0]), 1) << quarters;
+  }
+}
+
 /// The point of samples::cone on a paraboloid over a disk: squares become sectors, smoothly.
 Eigen::Vector3d roundVault(const Eigen::Vector3d& p, int quarters, double width) {
   double turn = std::atan2(p[1], p[0]) / (2 * std::numbers::pi) * quarters;
