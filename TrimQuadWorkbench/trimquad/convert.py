@@ -48,6 +48,7 @@ class RegionResult:
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
         self.refits = self.field_edits = 0
+        self.fitted_from = self  # whose map the B-spline surfaces are of: another one where creases were given up
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.seconds = {}
 
@@ -252,6 +253,11 @@ def _map_regions(result, progress):
             result.warnings.append(
                 f"region '{item.name}' is too narrow for the quads; its edge length is {item.edge_length:.6g}"
             )
+        if item.fitted_from is not item:
+            result.warnings.append(
+                f"region '{item.name}': the B-spline surfaces cannot follow its sharp edges as creases and round them within "
+                "the tolerance"
+            )
         given_up = item.field and item.region.features["aligned_edges"] - item.field.aligned_edges
         if given_up:
             result.warnings.append(
@@ -295,8 +301,8 @@ def _fit(item, result, progress, smallest_rectangle=False, part=1.0):
     native = load()
     tolerance = part * result.fit_tolerance
     return native.fit_surface(
-        item.mapped_region,
-        item.grid,
+        item.fitted_from.mapped_region,
+        item.fitted_from.grid,
         native.FitOptions(
             tolerance=tolerance,
             enough=ENOUGH * options.tolerance if part == 1 else tolerance,
@@ -325,10 +331,37 @@ def _map_region(item, index, result, progress):
                 item.region = item.mapped_region
                 item.grid = item.quads = item.fitted = None
                 continue
-            item.error = error
+            if not (error.stage == "fit" and _fit_without_creases(item, index, result, progress)):
+                item.error = error
         except MemoryError as error:
             item.error = system_error("memory", error)
         return
+
+
+def _fit_without_creases(item, index, result, progress):
+    """Where surfaces cannot follow a mesh's sharp edges as creases: surfaces over a map that ignores these. Whether they
+    could be fitted. The region's quads stay as they are."""
+    creases = item.region.features["aligned_edges"]
+    if result.source.kind != "mesh" or result.options.align or not creases or item.quads is None:
+        return False
+    native = load()
+    if item.mapped_region is item.region:
+        item.region = item.mapped_region = native.copy_region(item.region)
+    else:
+        item.mapped_region = native.copy_region(item.mapped_region)
+    native.place_without_creases(result.model, index, item.region)
+    smooth = RegionResult(result.model.regions[index])
+    smooth.edge_length, smooth.guidance = item.edge_length, item.guidance
+    if smooth.region.features["aligned_edges"] == creases:
+        return False
+    try:
+        _try_region(smooth, index, result, progress)
+    except Error as error:
+        if error.kind == "cancelled":
+            raise
+        return False
+    item.fitted, item.fitted_from = smooth.fitted, smooth
+    return True
 
 
 def _try_region(item, index, result, progress):
@@ -412,7 +445,7 @@ def _trim(result, progress):
             with progress.stage("trim") as native_progress:
                 result.spline = native.trim_model(
                     result.model,
-                    [r.grid if r.fitted is not None else None for r in result.regions],
+                    [r.fitted_from.grid if r.fitted is not None else None for r in result.regions],
                     [r.fitted for r in result.regions],
                     result.fit_tolerance,
                     native_progress,

@@ -95,6 +95,7 @@ def _nurbs_report(result, index, item):
         "rms_deviation": item.fitted.rms_deviation,
         "max_gap": max((f["edge_tolerance"] for f in faces), default=0.0),
         "tolerance": result.options.tolerance,
+        "creases": item.fitted_from is item,
     }
 
 

@@ -148,7 +148,17 @@ py::list curvesOf(const Model& model) {
 }
 
 void bindRegion(py::module_& m) {
-  m.def("copy_region", [](const Region& region) { return region; }, py::arg("region"));
+  m.def(
+      "copy_region", [](const Region& region) { return region; }, py::arg("region"));
+  m.def(
+      "place_without_creases",
+      [](Model& model, int index, const Region& region) {
+        Region smooth = region;
+        std::erase_if(smooth.aligned, [&](EdgeHandle e) { return !smooth.mesh.is_boundary(e); });
+        model.regions.at(std::size_t(index)) = std::move(smooth);
+      },
+      py::arg("model"), py::arg("index"), py::arg("region"),
+      "Puts a region into the model, without the aligned edges inside it.");
   py::class_<Region>(m, "Region")
       .def_readonly("name", &Region::name)
       .def_property_readonly("triangles", [](const Region& region) { return region.mesh.n_faces(); })

@@ -216,3 +216,44 @@ def test_a_shell_that_comes_back_to_where_it_began_is_cut_until_its_surfaces_cro
     assert result.regions[0].bisections[0] == [0]
     assert 2 <= len(result.shape.Faces) <= 4
     result.shape.check(True)
+
+
+class _NoCreases:
+    """The compiled stages, with a fit that cannot follow creases."""
+
+    def __init__(self, native):
+        self._native = native
+
+    def __getattr__(self, name):
+        return getattr(self._native, name)
+
+    def fit_surface(self, region, *rest):
+        if region.features["aligned_edges"]:
+            raise trimquad.Error("stage", "fit", "the tolerance cannot be met", region.name)
+        return self._native.fit_surface(region, *rest)
+
+
+def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monkeypatch):
+    import sys
+
+    import numpy as np
+
+    n = 16
+    steps = np.arange(n + 1.0)
+    points = np.array([(x, y, 0.7 * abs(x - 8)) for y in steps for x in steps])
+    corner = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
+    triangles = np.vstack([np.c_[corner, corner + 1, corner + n + 2], np.c_[corner, corner + n + 2, corner + n + 1]])
+    module = sys.modules["trimquad.convert"]
+    native = _NoCreases(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert((points, triangles), trimquad.Options(quads=100, relative_tolerance=5e-3))
+    (region,) = result.regions
+    assert region.error is None and region.fitted_from is not region
+    assert region.region.features["aligned_edges"] == n
+    assert any("cannot follow its sharp edges" in line for line in result.warnings)
+    assert len(result.shape.Faces) == 1
+    result.shape.check(True)
+    # With creases the middle line is one of the grid.
+    assert result.report["regions"][0]["nurbs"]["creases"] is False
+    x = np.array(region.polygons.points)[:, 0]
+    assert np.count_nonzero(np.abs(x - 8) < 1e-9) >= 8
