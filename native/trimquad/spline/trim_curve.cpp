@@ -91,6 +91,18 @@ SpaceCurve composed(const Sheet& sheet, const PlaneCurve& x, const Progress& pro
                          std::max(1, sheet.continuity()), deviation, kComposedError, progress);
 }
 
+/// The curve that `fit` gives; its errors say where.
+template <class Fit>
+auto located(const SheetSide& side, const SampledCurve& sampled, const Fit& fit) {
+  try {
+    return fit();
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::Stage) throw;
+    throw stageError(error.stage(), error.message(), side.region + ", " + sampled.curve->name,
+                     sampled.point[sampled.point.size() / 2]);
+  }
+}
+
 /// The smooth curve on the sheet that follows the sampled curve, from the side's start to its end.
 PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSide& side, double tolerance,
                       const Progress& progress) {
@@ -106,13 +118,9 @@ PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSid
     const Eigen::Vector2d x = side.sheet->footPoint(sampled.curve->curve->point(t), (p.point + q.point) / 2);
     return CurveSample<2>{(p.s + q.s) / 2, t, x, metric(*side.sheet, x)};
   };
-  try {
+  return located(side, sampled, [&] {
     return fitCurve<2>(samples, 3, tolerance, SampleParameters::Sliding, between, progress);
-  } catch (const Error& error) {
-    if (error.kind() != Error::Kind::Stage) throw;
-    throw stageError(error.stage(), error.message(), side.region + ", " + sampled.curve->name,
-                     sampled.point[sampled.point.size() / 2]);
-  }
+  });
 }
 
 }  // namespace
@@ -186,7 +194,9 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
     const double t = (p.t + q.t) / 2;
     return CurveSample<3>{(p.s + q.s) / 2, t, sampled.curve->curve->point(t), Eigen::Matrix3d::Identity()};
   };
-  auto reference = fitCurve<3>(samples, 5, tolerance, SampleParameters::Sliding, between, progress);
+  auto reference = located(sides[0], sampled, [&] {
+    return fitCurve<3>(samples, 5, tolerance, SampleParameters::Sliding, between, progress);
+  });
   std::vector<IntersectionCurve::Guess> guesses;
   for (std::size_t i = 0; i < sampled.s.size(); ++i) {
     IntersectionCurve::Guess guess{sampled.s[i], {}};
@@ -284,8 +294,10 @@ std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<
   const double offset =
       std::max((samples.front().metric * (samples.front().point - sampleB(samples.front().s).point)).norm(),
                (samples.back().metric * (samples.back().point - sampleB(samples.back().s).point)).norm());
-  const PlaneCurve wholeB = fitCurve<2>(samples, 3, std::max(tolerance / 20, 1.1 * offset),
-                                        SampleParameters::Fixed, between, progress);
+  const PlaneCurve wholeB = located(sides[1], sampled, [&] {
+    return fitCurve<2>(samples, 3, std::max(tolerance / 20, 1.1 * offset), SampleParameters::Fixed, between,
+                       progress);
+  });
   std::vector<double> cuts;
   appendSeamCrossings(
       sheetA, [&](double s) { return wholeA.point(s); }, wholeA.first(), wholeA.last(), cuts);
