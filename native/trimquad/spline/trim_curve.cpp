@@ -10,6 +10,8 @@
 namespace trimquad {
 namespace {
 
+/// Length of the stretch over which a curve is led to a corner off it, by how far off that is.
+constexpr double kPullLength = 20;
 constexpr int kGapSamples = 1000;
 
 Eigen::Matrix<double, 3, 2> metric(const Sheet& sheet, const Eigen::Vector2d& x) {
@@ -103,20 +105,45 @@ auto located(const SheetSide& side, const SampledCurve& sampled, const Fit& fit)
   }
 }
 
+/// Where a corner lies off the curve that ends in it, the curve is led there over a stretch that is long
+/// against the way; what a fit within the tolerance bridges itself is left to it.
+class EndPull {
+ public:
+  EndPull(const Sheet& sheet, const Eigen::Vector2d& foot, const Eigen::Vector2d& corner, double tolerance)
+      : move_(corner - foot), off_((metric(sheet, foot) * move_).norm()) {
+    if (!(off_ > tolerance / 2)) move_.setZero();
+  }
+  /// \param away from the end, along the curve
+  Eigen::Vector2d at(double away, double length) const {
+    const double x = away / std::min(kPullLength * off_, length / 3);
+    return x < 1 ? Eigen::Vector2d((1 - x) * (1 - x) * (1 + 2 * x) * move_) : Eigen::Vector2d(0, 0);
+  }
+
+ private:
+  Eigen::Vector2d move_;
+  double off_;
+};
+
 /// The smooth curve on the sheet that follows the sampled curve, from the side's start to its end.
 PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSide& side, double tolerance,
                       const Progress& progress) {
+  const auto& feet = sampled.foot[sideIndex];
+  const EndPull start(*side.sheet, feet.front(), side.start, tolerance),
+      end(*side.sheet, feet.back(), side.end, tolerance);
+  const double first = sampled.s.front(), last = sampled.s.back();
+  const auto sample = [&](double s, double t, const Eigen::Vector2d& foot) {
+    const Eigen::Vector2d x = foot + start.at(s - first, last - first) + end.at(last - s, last - first);
+    return CurveSample<2>{s, t, x, metric(*side.sheet, x)};
+  };
   std::vector<CurveSample<2>> samples;
-  for (std::size_t i = 0; i < sampled.s.size(); ++i) {
-    const Eigen::Vector2d& x = sampled.foot[sideIndex][i];
-    samples.push_back({sampled.s[i], sampled.t[i], x, metric(*side.sheet, x)});
-  }
+  for (std::size_t i = 0; i < sampled.s.size(); ++i)
+    samples.push_back(sample(sampled.s[i], sampled.t[i], feet[i]));
   samples.front().point = side.start;
   samples.back().point = side.end;
   const auto between = [&](const CurveSample<2>& p, const CurveSample<2>& q) {
     const double t = (p.t + q.t) / 2;
-    const Eigen::Vector2d x = side.sheet->footPoint(sampled.curve->curve->point(t), (p.point + q.point) / 2);
-    return CurveSample<2>{(p.s + q.s) / 2, t, x, metric(*side.sheet, x)};
+    return sample((p.s + q.s) / 2, t,
+                  side.sheet->footPoint(sampled.curve->curve->point(t), (p.point + q.point) / 2));
   };
   return located(side, sampled, [&] {
     return fitCurve<2>(samples, 3, tolerance, SampleParameters::Sliding, between, progress);
