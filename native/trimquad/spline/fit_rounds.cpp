@@ -16,6 +16,10 @@ namespace {
 /// most for another to be worth it.
 constexpr int kMaxCorrections = 4;
 constexpr double kCorrectionPays = 0.85;
+/// The same where the deviation is below so many tolerances: the last bit is cheaper than more knots.
+constexpr double kClose = 3;
+constexpr int kMaxCorrectionsClose = 12;
+constexpr double kCorrectionPaysClose = 0.96;
 /// Multiple of the tolerance below which parameters are corrected, unless knots alone do not help: feet on a
 /// surface that is still far from the region would bring its waves into the parameters.
 constexpr double kCorrectionStarts = 20;
@@ -31,6 +35,8 @@ constexpr double kWorstPart = 0.3;
 constexpr int kPatience = 4;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
+/// Part of the control samples at most that may have started from bad parameters.
+constexpr double kFewLost = 0.01;
 
 TriangleTree triangleTree(const SurfaceMesh& mesh) {
   std::vector<Eigen::Vector3d> points;
@@ -157,10 +163,10 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
   return deviationOf(samples, turnedOver);
 }
 
-/// Whether the region faces that way within the tolerance of a point: small curls of it may be flattened.
+/// Whether the region faces that way within what is allowed of a point: small curls of it may be flattened.
 bool FitRounds::facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const {
   const auto hit = triangles_.closestFacing(p, normal);
-  return hit && hit->squaredDistance <= tolerance_ * tolerance_;
+  return hit && hit->squaredDistance <= enough_ * enough_;
 }
 
 /// Of the samples that lie farther away than that.
@@ -232,11 +238,37 @@ void FitRounds::keepIfEnough() {
   failing_ = failing;
 }
 
+/// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
+/// corrected: from the map's, the way to a foot may end on the other side of a sharp bend. Whether there are
+/// any, and few enough that this can be the reason.
+bool FitRounds::startNearby(std::vector<SurfaceSample>& control, double tolerance) const {
+  std::vector<SurfaceSample*> lost;
+  for (auto& s : control)
+    if (!(std::abs(s.distance) <= tolerance)) lost.push_back(&s);
+  if (lost.empty() || double(lost.size()) > kFewLost * double(control.size())) return false;
+  parallelParts(int(lost.size()), threads_, [&](int begin, int end) {
+    progress_.check();
+    for (int i = begin; i < end; ++i) {
+      const SurfaceSample* nearest = nullptr;
+      for (const auto& s : samples_)
+        if (s.normal.dot(lost[i]->normal) > 0 &&
+            (!nearest ||
+             (s.point - lost[i]->point).squaredNorm() < (nearest->point - lost[i]->point).squaredNorm()))
+          nearest = &s;
+      if (!nearest) continue;
+      lost[i]->chart = nearest->chart;
+      lost[i]->parameter = nearest->parameter;
+    }
+  });
+  return true;
+}
+
 /// Whether other samples keep the tolerance as well.
 bool FitRounds::verified(double tolerance) {
   auto control = makeSamples(true);
   std::vector<FitPlace> feet;
-  const Deviation found = measure(control, feet);
+  Deviation found = measure(control, feet);
+  if (startNearby(control, tolerance)) found = measure(control, feet);
   if (policy_.failsAtFeet) moveTo(feet, control);
   result_.maxDeviation = std::max(found.max, deviation_.max);
   result_.rmsDeviation = found.rms;
@@ -255,8 +287,12 @@ double FitRounds::threshold(double largest) const {
 bool FitRounds::correctionPays() const {
   const bool early = deviation_.max > kCorrectionStarts * tolerance_ && !stalled();
   if (double(deviation_.turnedOver.size()) > kFewTurned * double(samples_.size())) return false;
-  if (deviation_.max <= tolerance_ || early || corrections_ >= kMaxCorrections) return false;
-  return corrections_ == 0 || deviation_.max <= kCorrectionPays * previous_.max ||
+  const bool close = deviation_.max <= kClose * tolerance_;
+  if (deviation_.max <= tolerance_ || early ||
+      corrections_ >= (close ? kMaxCorrectionsClose : kMaxCorrections))
+    return false;
+  const double pays = close ? kCorrectionPaysClose : kCorrectionPays;
+  return corrections_ == 0 || deviation_.max <= pays * previous_.max ||
          deviation_.rms <= kCorrectionPays * previous_.rms;
 }
 

@@ -95,6 +95,7 @@ class FitRounds {
   void correct();
   void chooseParameters();
   void keepIfEnough();
+  bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
   bool verified(double tolerance);
   double threshold(double largest) const;
   bool stalled() const { return best_ > 0.5 * atRefinement_; }
