@@ -16,8 +16,10 @@ struct RemeshOptions {
   double tolerance;   ///< wanted distance between triangles and surface, model units
 };
 
-/// The shortest edge that curvature can ask for, as a share of the wanted length.
+/// The shortest edge that curvature asks for by its turn, as a share of the wanted length.
 inline constexpr double kShortestEdge = 0.2;
+/// The same where the tolerance would not be kept otherwise.
+inline constexpr double kTightestEdge = 0.02;
 /// An edge spans at most this angle of a curve or surface (radians), unless it would be shorter than that.
 inline constexpr double kLargestTurn = 0.8;
 

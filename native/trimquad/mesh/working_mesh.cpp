@@ -59,8 +59,12 @@ double WorkingMesh::sizeAt(const Vector3d& point) const {
   const double k = std::max(std::abs(c.k1), std::abs(c.k2));
   if (!(k > 0)) return options_.edgeLength;
   // An edge of length l on a circle of curvature k is l^2 k / 8 away from it.
-  const double wanted = std::min(std::sqrt(8 * options_.tolerance / k), kLargestTurn / k);
-  return std::clamp(wanted, kShortestEdge * options_.edgeLength, options_.edgeLength);
+  const double sag = std::sqrt(8 * options_.tolerance / k);
+  const double wanted = std::min(sag, kLargestTurn / k);
+  // Where even the shortest edge would cut off more than the tolerance, such as the lip of an inlet.
+  const double lower =
+      std::min(kShortestEdge * options_.edgeLength, std::max(sag, kTightestEdge * options_.edgeLength));
+  return std::clamp(wanted, lower, options_.edgeLength);
 }
 
 double WorkingMesh::quality(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normal) {

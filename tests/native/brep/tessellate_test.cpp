@@ -28,6 +28,7 @@
 #include <tuple>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/aabb_tree.h"
 
 namespace trimquad {
 namespace {
@@ -270,6 +271,30 @@ TEST(Tessellate, trianglesDoNotReachAcrossARoundingSmallerThanThemselves) {
       const double inside = std::min({c.x(), 2 - c.x(), c.y(), 2 - c.y(), c.z(), 1 - c.z()});
       EXPECT_LT(inside, 2 * radius);
     }
+}
+
+TEST(Tessellate, theLipOfAThinPlateIsNotCutOff) {
+  // Rounded all around its rim with half its thickness: the lip is much narrower than the triangles.
+  constexpr double radius = 0.02, tolerance = 0.004;
+  const TopoDS_Shape plate = BRepPrimAPI_MakeBox(4, 4, 2.2 * radius).Shape();
+  BRepFilletAPI_MakeFillet fillet(plate);
+  for (TopExp_Explorer edge(plate, TopAbs_EDGE); edge.More(); edge.Next()) {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(edge.Current()));
+    if (std::abs(curve.Line().Direction().X()) > 0.5) fillet.Add(radius, TopoDS::Edge(edge.Current()));
+  }
+  const Model model = tessellated(fillet.Shape(), 0.5, tolerance);
+  std::vector<Vector3d> points;
+  std::vector<std::array<int, 3>> triangles;
+  for (const auto& region : model.regions)
+    for (const auto f : region.mesh.faces()) {
+      triangles.push_back({int(points.size()), int(points.size()) + 1, int(points.size()) + 2});
+      for (const auto v : region.mesh.fv_range(f)) points.push_back(region.mesh.point(v));
+    }
+  const TriangleTree tree(points, triangles);
+  double worst = 0;
+  for (double x = 0.3; x < 3.8; x += 0.037)
+    worst = std::max(worst, tree.closest({x, 0, 1.1 * radius}).squaredDistance);
+  EXPECT_LT(std::sqrt(worst), 1.2 * tolerance);
 }
 
 TEST(Tessellate, facesThatOnlyTouchAreSewn) {
