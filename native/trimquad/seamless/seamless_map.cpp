@@ -12,6 +12,9 @@
 namespace trimquad {
 namespace {
 
+/// How much more a map may be distorted so that it covers no part of the plane twice.
+constexpr double kWorthOneSurface = 3;
+
 MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, const std::vector<int>& combing,
                     double edgeLength) {
   MapTarget target(mesh.n_faces());
@@ -136,12 +139,17 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   // A tube that is not becomes a plane region, whose map cannot follow the field.
   if ((map.seams.outerLoop || map.seams.tube) && field.aligned.empty() && overlaps(map, map.seams)) {
     const double follow = map.seams.tube ? 0.0 : kFollow;
-    map.counters.scaffolded = true;
-    map.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
-    const SeamBasis plane(mesh, map.seams, {});
+    SeamlessMap grown = map;
+    grown.counters.scaffolded = true;
+    grown.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
+    const SeamBasis plane(mesh, grown.seams, {});
     const Eigen::VectorXd apart =
-        oneToOneMap(mesh, map.seams, map.target, plane, follow, map.counters, progress);
-    static_cast<Parametrization&>(map) = exactMap(mesh, plane, apart, false);
+        oneToOneMap(mesh, grown.seams, grown.target, plane, follow, grown.counters, progress);
+    // Beyond that several surfaces serve better.
+    if (grown.counters.distortionEnd <= kWorthOneSurface * map.counters.distortionEnd) {
+      static_cast<Parametrization&>(grown) = exactMap(mesh, plane, apart, false);
+      map = std::move(grown);
+    }
   }
   map.aligned = field.aligned;
   map.featurePoints = region.featurePoints;
