@@ -54,24 +54,41 @@ LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Lay
 
 void LayoutSamples::collectSingularCorners() {
   singular_.resize(layout_.charts.size());
-  const auto isSingular = [&](int point) { return layout_.points[point].isSingular(); };
   std::map<int, double> reach;  // by point
-  for (const auto& border : layout_.borders)
-    for (const int point : {border.startPoint, border.endPoint}) {
-      const bool both = isSingular(border.startPoint) && isSingular(border.endPoint);
-      const double own = both ? border.length() / 2 : border.length();
-      const auto [it, isNew] = reach.try_emplace(point, kSingularReach);
-      it->second = std::min(it->second, own);
-    }
+  struct Corner {
+    int point;
+    Eigen::Vector2d at;
+  };
+  std::vector<std::vector<Corner>> corners(layout_.charts.size());
   for (const auto& border : layout_.borders)
     for (const bool atStart : {true, false}) {
       const int point = atStart ? border.startPoint : border.endPoint;
-      if (!isSingular(point)) continue;
+      if (!layout_.points[point].isSingular()) continue;
+      reach[point] = kSingularReach;
       // Every sector has two borders there; one of them has it to its left, seen from the singularity.
       const int side = atStart ? 0 : 1;
-      singular_[border.chart[side]].push_back({atStart ? border.start[side] : border.end[side],
-                                               reach.at(point), 4.0 / layout_.points[point].quarters});
+      corners[border.chart[side]].push_back({point, atStart ? border.start[side] : border.end[side]});
     }
+  // What is moved must end within the charts around the singularity, and before the next one's.
+  for (std::size_t c = 0; c < corners.size(); ++c)
+    for (const auto& a : corners[c])
+      for (const auto& b : corners[c])
+        if (a.at != b.at) reach[a.point] = std::min(reach[a.point], (a.at - b.at).norm() / 2);
+  for (const auto& border : layout_.borders)
+    for (const int side : {0, 1})
+      for (const auto& corner : corners[border.chart[side]]) {
+        const Eigen::Vector2d &p = border.start[side], &q = border.end[side];
+        // Along a border of its own as far as that goes, away from others as far as they are.
+        const double away =
+            corner.at == p || corner.at == q
+                ? border.length()
+                : (corner.at - corner.at.cwiseMax(p.cwiseMin(q)).cwiseMin(p.cwiseMax(q))).norm();
+        reach[corner.point] = std::min(reach[corner.point], away);
+      }
+  for (std::size_t c = 0; c < corners.size(); ++c)
+    for (const auto& corner : corners[c])
+      singular_[c].push_back(
+          {corner.at, reach.at(corner.point), 4.0 / layout_.points[corner.point].quarters});
 }
 
 /// Whether a triangle of a chart's plane comes within a few knot intervals of a singularity.
