@@ -53,7 +53,8 @@ def _region_report(result, index, item, seconds):
             "boundary_loops": item.region.boundary_loops,
             "euler": item.region.euler,
         },
-        "features": {**item.region.features, "followed_edges": item.field and item.field.aligned_edges},
+        "features": {**item.region.features, "followed_edges": item.field and item.field.aligned_edges,
+                     "creases": item.fitted_from is item},
         "singularities": item.field and _singularities(item.field),
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
         "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
@@ -95,7 +96,6 @@ def _nurbs_report(result, index, item):
         "rms_deviation": item.fitted.rms_deviation,
         "max_gap": max((f["edge_tolerance"] for f in faces), default=0.0),
         "tolerance": result.options.tolerance,
-        "creases": item.fitted_from is item,
     }
 
 

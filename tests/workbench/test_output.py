@@ -254,6 +254,6 @@ def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monke
     assert len(result.shape.Faces) == 1
     result.shape.check(True)
     # With creases the middle line is one of the grid.
-    assert result.report["regions"][0]["nurbs"]["creases"] is False
+    assert result.report["regions"][0]["features"]["creases"] is False
     x = np.array(region.polygons.points)[:, 0]
     assert np.count_nonzero(np.abs(x - 8) < 1e-9) >= 8

@@ -18,8 +18,6 @@ constexpr int kMaxPoles = 200000;
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
 constexpr double kTangentGivesWay = 0.1;
-/// The same of the reach within which the surfaces are kept fair there.
-constexpr double kReachGivesWay = 0.5;
 constexpr double kOnLine = 1e-9;  ///< quads
 
 /// A border as one of its charts sees it.
@@ -205,11 +203,8 @@ class LayoutFit : public FitRounds {
     return {from.chart, result_.surfaces[from.chart].footPoint(p, from.parameter, side.box(), kFootStep)};
   }
 
-  /// What stalls next to a singularity may be held by the tangents there, and by what keeps it fair.
-  void giveWay() override {
-    space_.tangentWeight *= kTangentGivesWay;
-    space_.stiffReach *= kReachGivesWay;
-  }
+  /// What stalls next to a singularity may be held by the tangents there.
+  void giveWay() override { space_.tangentWeight *= kTangentGivesWay; }
 
   /// A border's curve has only knots that both sides have: where it fails, or where the finer side's next
   /// poles go another way than it and fold over, the coarser side is to be refined too.
