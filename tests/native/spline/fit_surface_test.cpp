@@ -182,6 +182,8 @@ TEST(FitSurface, creasesObliqueToTheGridAreReachedByKnots) {
 
 TEST(FitSurface, unreachableTolerancesSayHowFarTheyCame) {
   AnalyticRegion roof;
+  roof.columns = roof.rows = 4;
+  roof.lastU = roof.lastV = 4;
   roof.point = [](double u, double v) { return Eigen::Vector3d(u, v, std::abs(u - 0.7 * v)); };
   roof.build();
   try {
