@@ -463,9 +463,11 @@ def _trim(result, progress):
             guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
             for item in guilty:
                 _refit(item, set(), error, result, progress)
-            for item in [] if guilty else [r for r in result.regions if r.fitted is not None]:
-                item.fitted = None
-                item.error = error
+            if not guilty:
+                for item in result.regions:
+                    if item.fitted is not None:
+                        item.fitted = None
+                        item.error = error
     if result.spline is None:
         result.native_shape = None
     result.seconds["trim"] = time.monotonic() - started

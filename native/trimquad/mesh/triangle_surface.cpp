@@ -113,7 +113,11 @@ Matrix3d bendingAt(const SurfaceMesh& mesh, VertexHandle center,
 
 }  // namespace
 
-TriangleSurface::TriangleSurface(const SurfaceMesh& mesh) : tree_(positions(mesh), triangles(mesh)) {
+TriangleTree triangleTree(const SurfaceMesh& mesh) {
+  return {positions(mesh), triangles(mesh)};
+}
+
+TriangleSurface::TriangleSurface(const SurfaceMesh& mesh) : tree_(triangleTree(mesh)) {
   bending_.reserve(mesh.n_vertices());
   Neighbourhood neighbourhood(mesh);
   for (const auto v : mesh.vertices()) bending_.push_back(bendingAt(mesh, v, neighbourhood.around(v)));

@@ -29,4 +29,7 @@ class TriangleSurface : public TrueSurface {
   std::vector<Eigen::Matrix3d> bending_;  ///< by vertex: k1 d1 d1^T + k2 d2 d2^T
 };
 
+/// All triangles of a mesh. Throws Error(Input) if it has none.
+TriangleTree triangleTree(const SurfaceMesh& mesh);
+
 }  // namespace trimquad

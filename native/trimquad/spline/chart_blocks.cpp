@@ -77,16 +77,18 @@ class Cuts {
   std::vector<char> touched_;  ///< by point of the overlay
 };
 
-/// The cells that hang together with `first` without crossing a cut, by breadth-first search.
-std::vector<PlacedCell> block(const CellGraph& graph, const Cuts& cuts, int first,
-                              std::vector<char>& reached) {
-  std::vector<PlacedCell> cells{{first, {}}};
-  reached[first] = 1;
+/// The cells that hang together with `first` over sides that may be passed, by breadth-first search, in its
+/// plane.
+template <class MayPass>
+std::vector<PlacedCell> connected(const CellGraph& graph, const PlacedCell& first, const MayPass& mayPass,
+                                  std::vector<char>& reached) {
+  std::vector<PlacedCell> cells{first};
+  reached[first.cell] = 1;
   for (std::size_t next = 0; next < cells.size(); ++next) {
     const PlacedCell placed = cells[next];
     for (const int h : graph.sides(placed.cell)) {
       const int other = graph.cellAcross(h);
-      if (cuts[h] || reached[other]) continue;
+      if (!mayPass(h) || reached[other]) continue;
       reached[other] = 1;
       cells.push_back({other, placed.toChart.after(graph.fromAcross(h))});
     }
@@ -258,11 +260,8 @@ std::vector<Eigen::Vector3d> cellNormals(const CellGraph& graph) {
   std::vector<Eigen::Vector3d> result(graph.size(), Eigen::Vector3d::Zero());
   for (int c = 0; c < graph.size(); ++c)
     for (const int piece : graph.pieces(c)) {
-      const auto h = mesh.halfedge_handle(graph.overlay().pieces[piece].triangle);
-      const Eigen::Vector3d p = mesh.point(mesh.from_vertex_handle(h)),
-                            q = mesh.point(mesh.to_vertex_handle(h)),
-                            r = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(h)));
-      result[c] += double(graph.overlay().pieces[piece].doubleArea) * (q - p).cross(r - p).normalized();
+      const auto& here = graph.overlay().pieces[piece];
+      result[c] += double(here.doubleArea) * mesh.calc_face_normal(here.triangle);
     }
   for (auto& n : result) n.normalize();
   return result;
@@ -322,7 +321,8 @@ ChartPartition blocks(const CellGraph& graph, const Progress& progress) {
     std::vector<std::pair<int, int>> apart;
     for (int first = 0; first < graph.size(); ++first) {
       if (reached[first]) continue;
-      auto cells = block(graph, cuts, first, reached);
+      auto cells = connected(
+          graph, {first, {}}, [&](int h) { return !cuts[h]; }, reached);
       if (const auto pair = conflict(graph, cells)) apart.push_back(*pair);
       for (const auto& placed : cells) {
         result.chartOf[placed.cell] = int(result.charts.size());
@@ -354,34 +354,29 @@ ChartPartition bisected(const CellGraph& graph, const ChartPartition& charts,
                         const std::vector<int>& chosen) {
   const auto normals = cellNormals(graph);
   ChartPartition result = charts;
+  std::vector<char> reached(graph.size(), 0);
   for (const int chart : chosen) {
     const auto line = middleOfBend(graph, charts, chart, normals);
     if (!line) continue;
-    // Each side of the line may consist of several parts.
-    std::set<int> left;
-    for (const auto& placed : charts.charts[chart]) left.insert(placed.cell);
-    result.charts[chart].clear();
-    bool first = true;
-    while (!left.empty()) {
-      const int start = *left.begin();
-      left.erase(left.begin());
-      const int id = first ? chart : int(result.charts.size());
-      if (!first) result.charts.emplace_back();
-      first = false;
-      std::deque<int> queue{start};
-      while (!queue.empty()) {
-        const int cell = queue.front();
-        queue.pop_front();
-        result.charts[id].push_back({cell, charts.toChart[cell]});
-        result.chartOf[cell] = id;
-        for (const int h : graph.sides(cell)) {
-          const int other = graph.cellAcross(h);
-          if (charts.chartOf[other] == chart &&
-              line->isBeyond(placeOf(graph, charts, other)) == line->isBeyond(placeOf(graph, charts, cell)) &&
-              left.erase(other))
-            queue.push_back(other);
-        }
-      }
+    const auto isBeyond = [&](int cell) { return line->isBeyond(placeOf(graph, charts, cell)); };
+    const auto mayPass = [&](int h) {
+      const int other = graph.cellAcross(h);
+      return charts.chartOf[other] == chart && isBeyond(other) == isBeyond(graph.cellAt(h));
+    };
+    std::vector<PlacedCell> cells = charts.charts[chart];
+    std::sort(cells.begin(), cells.end(),
+              [](const PlacedCell& a, const PlacedCell& b) { return a.cell < b.cell; });
+    // Each side of the line may consist of several parts; the first keeps the chart's number.
+    int id = chart;
+    for (const auto& placed : cells) {
+      if (reached[placed.cell]) continue;
+      auto part = connected(graph, placed, mayPass, reached);
+      for (const auto& member : part) result.chartOf[member.cell] = id;
+      if (id == chart)
+        result.charts[id] = std::move(part);
+      else
+        result.charts.push_back(std::move(part));
+      id = int(result.charts.size());
     }
   }
   return result;

@@ -86,10 +86,7 @@ class LayoutFit : public FitRounds {
   const SplineSpace& space(int chart) const override { return space_.charts[chart]; }
   std::vector<SurfaceSample> makeSamples(bool control) override {
     auto samples = source_.make(space_, control, progress_);
-    if (control) return samples;
-    std::vector<std::vector<Datum>> data(charts());
-    for (const auto& s : samples) data[s.chart].push_back({s.parameter, s.point, s.weight});
-    space_.alignTangents(data);
+    if (!control) space_.alignTangents(dataOf(samples, std::vector<double>(samples.size(), 1)));
     return samples;
   }
   const std::vector<std::array<int, 3>>& cells() const override { return source_.cells(); }

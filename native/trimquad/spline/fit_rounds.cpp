@@ -8,6 +8,7 @@
 #include <string>
 
 #include "trimquad/base/parallel.h"
+#include "trimquad/mesh/triangle_surface.h"
 
 namespace trimquad {
 namespace {
@@ -37,18 +38,6 @@ constexpr int kPatience = 4;
 constexpr double kFewTurned = 0.05;
 /// Part of the control samples at most that may have started from bad parameters.
 constexpr double kFewLost = 0.01;
-
-TriangleTree triangleTree(const SurfaceMesh& mesh) {
-  std::vector<Eigen::Vector3d> points;
-  std::vector<std::array<int, 3>> triangles;
-  for (const auto v : mesh.vertices()) points.push_back(mesh.point(v));
-  for (const auto f : mesh.faces()) {
-    auto& corners = triangles.emplace_back();
-    int k = 0;
-    for (const auto v : mesh.fv_range(f)) corners[k++] = v.idx();
-  }
-  return {std::move(points), std::move(triangles)};
-}
 
 std::string shortNumber(double x) {
   char text[32];
@@ -112,13 +101,19 @@ void FitRounds::takeSamples() {
   emphasis_.assign(samples_.size(), 1);
 }
 
+std::vector<std::vector<Datum>> FitRounds::dataOf(const std::vector<SurfaceSample>& samples,
+                                                  const std::vector<double>& emphasis) const {
+  std::vector<std::vector<Datum>> data(charts());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& s = samples[i];
+    data[s.chart].push_back({s.parameter, s.point, s.weight * emphasis[i]});
+  }
+  return data;
+}
+
 /// The surfaces through the samples at their parameters, and their deviation.
 void FitRounds::solve() {
-  std::vector<std::vector<Datum>> data(charts());
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const auto& s = samples_[i];
-    data[s.chart].push_back({s.parameter, s.point, s.weight * emphasis_[i]});
-  }
+  const auto data = dataOf(samples_, emphasis_);
   auto surfaces = leastSquares(data);
   for (int attempt = 0; !surfaces && attempt < 4; ++attempt) {
     stiffen(100);

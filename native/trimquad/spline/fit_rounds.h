@@ -55,6 +55,9 @@ class FitRounds {
   };
   /// The foot of a point, from a place near it.
   virtual Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const = 0;
+  /// By chart. \param emphasis by sample: factor of its weight
+  std::vector<std::vector<Datum>> dataOf(const std::vector<SurfaceSample>& samples,
+                                         const std::vector<double>& emphasis) const;
   /// Whether the sample's parameter is not to be corrected.
   virtual bool isHeld(const SurfaceSample&) const { return false; }
   /// Knots where samples fail, and where others than these are turned over for want of them; false where none

@@ -227,21 +227,12 @@ void ModelTrimmer::collectRuns() {
 }
 
 void ModelTrimmer::placeCorners() {
+  const auto addUse = [&](const BoundaryRun& run, const RunEnd& end, std::size_t at) {
+    uses_.push_back({cornerOf(end), sheetOf(run), end.vertex, end.point, run.points[at], run.uv[at], {}});
+  };
   for (const auto& run : runs_) {
-    uses_.push_back({cornerOf(run.start),
-                     sheetOf(run),
-                     run.start.vertex,
-                     run.start.point,
-                     run.points.front(),
-                     run.uv.front(),
-                     {}});
-    uses_.push_back({cornerOf(run.end),
-                     sheetOf(run),
-                     run.end.vertex,
-                     run.end.point,
-                     run.points.back(),
-                     run.uv.back(),
-                     {}});
+    addUse(run, run.start, 0);
+    addUse(run, run.end, run.points.size() - 1);
   }
   std::sort(uses_.begin(), uses_.end(),
             [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
