@@ -360,6 +360,9 @@ def _fit_without_creases(item, index, result, progress):
         if error.kind == "cancelled":
             raise
         return False
+    finally:
+        for stage, seconds in smooth.seconds.items():
+            item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
     item.fitted, item.fitted_from = smooth.fitted, smooth
     return True
 

@@ -253,6 +253,8 @@ def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monke
     assert any("cannot follow its sharp edges" in line for line in result.warnings)
     assert len(result.shape.Faces) == 1
     result.shape.check(True)
+    # Both maps took their time.
+    assert all(region.seconds[stage] > seconds for stage, seconds in region.fitted_from.seconds.items())
     # With creases the middle line is one of the grid.
     assert result.report["regions"][0]["features"]["creases"] is False
     x = np.array(region.polygons.points)[:, 0]
