@@ -1,5 +1,9 @@
 #include "trimquad/gridmap/grid_map.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "trimquad/base/error.h"
 #include "trimquad/gridmap/grid_offset.h"
 #include "trimquad/gridmap/node_relations.h"
 #include "trimquad/seamless/solve_map.h"
@@ -33,12 +37,29 @@ Eigen::VectorXd coordinatesOf(const SeamlessMap& map, const SeamBasis& basis) {
   return x;
 }
 
+/// The translation of a tube's seam, rounded; the longer part of it is no less than a quad.
+BranchTranslation wholePeriod(const SeamlessMap& map) {
+  for (const auto h : map.mesh.halfedges()) {
+    const auto& crossing = map.seams.crossing[h.idx()];
+    if (!crossing || !crossing->forward) continue;
+    const Eigen::Vector2d period = map.scale.toQuads(map.transition(h).translation);
+    const int axis = std::abs(period[0]) >= std::abs(period[1]) ? 0 : 1;
+    BranchTranslation whole;
+    whole[axis] = std::max(1, int(std::lround(std::abs(period[axis])))) * (period[axis] < 0 ? -1 : 1);
+    whole[1 - axis] = int(std::lround(period[1 - axis]));
+    return whole;
+  }
+  TRIMQUAD_ASSERT(false);
+  return {};
+}
+
 }  // namespace
 
 GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
                 const Progress& progress) {
   GridMap map;
-  if (seamless.seams.rotation.empty() && seamless.aligned.empty() && seamless.featurePoints.empty()) {
+  const bool isFree = seamless.aligned.empty() && seamless.featurePoints.empty();
+  if (seamless.seams.rotation.empty() && isFree) {
     // Nothing is bound to integers: the seamless map is a grid map, wherever it lies.
     map.counters = seamless.counters;
     static_cast<Parametrization&>(map) = seamless;
@@ -47,9 +68,15 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
     verify(map, true);
     return map;
   }
+  // On a tube the period alone is. (Lengths of the T-mesh would move its holes' rims apart, each by itself.)
+  const bool onlyPeriod = seamless.seams.tube && seamless.seams.rotation.front() == 0 && isFree;
   SeamConstraints constraints;
-  constraints.aligned = seamless.alignedSides;
-  constraints.grid = gridPoints(seamless.mesh, seamless.seams, tmesh, quantization);
+  if (onlyPeriod) {
+    constraints.translations = {wholePeriod(seamless)};
+  } else {
+    constraints.aligned = seamless.alignedSides;
+    constraints.grid = gridPoints(seamless.mesh, seamless.seams, tmesh, quantization);
+  }
   const SeamBasis basis(seamless.mesh, seamless.seams, constraints);
   const Eigen::VectorXd z =
       solveMap(seamless.mesh, seamless.seams, seamless.target,

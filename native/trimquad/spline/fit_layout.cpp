@@ -18,6 +18,11 @@ constexpr int kMaxPoles = 200000;
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
 constexpr double kTangentGivesWay = 0.1;
+/// Knots at these distances from singularities, where the surfaces bend from one sector's shape to the
+/// grid's.
+constexpr double kKnotsAround[] = {1, 2};
+/// How far borders go on beyond the boundary, quads.
+constexpr double kGoesOn = 0.5;
 constexpr double kOnLine = 1e-9;  ///< quads
 
 /// A border as one of its charts sees it.
@@ -106,10 +111,21 @@ class LayoutFit : public FitRounds {
       const double high =
           std::ceil(chart.high[axis] + (needsRoom(c, axis, chart.high[axis], room) ? room : 0));
       std::set<double> fixed{low, high};
+      for (const auto& corner : singular_[c])
+        for (const double d : kKnotsAround)
+          for (const double at : {corner[axis] - d, corner[axis] + d})
+            if (at > low && at < high) fixed.insert(at);
       for (const auto& side : sides_[c])
         for (const double s : {0.0, side.length})
-          if (side.endsInside[s > 0] || side.along[axis] == 0)
+          if (side.endsInside[s > 0] || side.along[axis] == 0) {
             fixed.insert((side.start + s * side.along)[axis]);
+          } else if (const double out = (s > 0 ? 1 : -1) * side.along[axis]; goesOnBeyond(c, side, s)) {
+            // Across a hole both stretches of the line go their own ways: they need not fit together there.
+            const double end = (side.start + s * side.along)[axis];
+            const double first = out > 0 ? std::ceil(end + kGoesOn) : std::floor(end - kGoesOn);
+            for (int k = 0; k < degree; ++k)
+              if (const double at = first + k * out; at > low && at < high) fixed.insert(at);
+          }
       lines[axis].degree = degree;
       for (auto at = fixed.begin(); std::next(at) != fixed.end(); ++at) {
         const double a = *at, b = *std::next(at);
@@ -119,6 +135,17 @@ class LayoutFit : public FitRounds {
       lines[axis].breaks.push_back(high);
     }
     return {lines[0], lines[1]};
+  }
+
+  /// Whether another border of the chart lies on the same line, beyond an end of this one.
+  bool goesOnBeyond(int c, const BorderSide& side, double end) const {
+    return std::any_of(sides_[c].begin(), sides_[c].end(), [&](const BorderSide& other) {
+      if (other.along[0] * side.along[1] != other.along[1] * side.along[0]) return false;
+      const Eigen::Vector2d away = other.start - side.start;
+      if (away.dot(side.inward) != 0) return false;
+      const double a = away.dot(side.along), b = a + other.length * other.along.dot(side.along);
+      return end > 0 ? std::min(a, b) > end : std::max(a, b) < end;
+    });
   }
 
   /// Whether the surface's boundary comes close to that side of the chart's bounding box, where no border

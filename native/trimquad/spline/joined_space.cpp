@@ -4,16 +4,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "trimquad/base/error.h"
 #include "trimquad/base/sparse_solver.h"
 
 namespace trimquad {
 namespace {
 
-/// Weight of exact conditions in the quadratic, relative to the data.
-constexpr double kExactWeight = 100;
-constexpr int kMaxMultiplierSteps = 100;
-constexpr int kIdleMultiplierSteps = 8;
+/// Weight of exact conditions in the quadratic, relative to the data: much more would drown the fairness in
+/// rounding.
+constexpr double kExactWeight = 1e6;
+constexpr int kMaxMultiplierSteps = 200;
+constexpr int kIdleMultiplierSteps = 60;
 /// Violations of exact conditions that are left, relative to the extent of the data.
 constexpr double kRounding = 1e-13;
 /// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
@@ -32,33 +35,53 @@ using Terms = std::vector<std::pair<int, double>>;
 class ChartEvaluator {
  public:
   ChartEvaluator(const SplineSpace& space, int offset)
-      : space_(space), offset_(offset), knotsU_(space.u.knots()), knotsV_(space.v.knots()) {}
-
-  /// Appends factor * d^order S / d axis^order.
-  void append(const Eigen::Vector2d& x, int axis, int order, double factor, Terms& terms) const {
-    BasisFunctions bu, bv;
-    basisFunctions(knotsU_, space_.u.degree, x[0], order, bu);
-    basisFunctions(knotsV_, space_.v.degree, x[1], order, bv);
-    const int ku = axis == 0 ? order : 0, kv = axis == 1 ? order : 0;
-    for (int j = 0; j <= space_.v.degree; ++j)
-      for (int i = 0; i <= space_.u.degree; ++i) {
-        const double value = factor * bu.value[ku][i] * bv.value[kv][j];
-        if (value != 0)
-          terms.push_back({offset_ + bu.first + i + space_.u.unknowns() * (bv.first + j), value});
-      }
-  }
+      : space_(space), offset_(offset), knots_{space.u.knots(), space.v.knots()} {}
 
   /// Appends factor * the derivative along a unit vector of the grid.
   void appendAlong(const Eigen::Vector2d& x, const Eigen::Vector2d& direction, double factor,
                    Terms& terms) const {
     const int axis = direction[0] != 0 ? 0 : 1;
-    append(x, axis, 1, factor * direction[axis], terms);
+    Functions f[2];
+    for (int k : {0, 1}) f[k] = functions(k, x[k], k == axis ? 1 : 0);
+    append(f[0], f[1], factor * direction[axis], terms);
+  }
+
+  /// Appends factor times the polar form along `axis`, in the span that holds `at`, of the surface on the
+  /// line where the other coordinate is `line`, or of its `order`-th derivative across that line.
+  void appendPolar(int axis, double at, std::span<const double> arguments, double line, int order,
+                   double factor, Terms& terms) const {
+    Functions f[2];
+    f[axis].first = polarForm(knots_[axis], degree(axis), at, arguments, f[axis].value);
+    f[1 - axis] = functions(1 - axis, line, order);
+    append(f[0], f[1], factor, terms);
   }
 
  private:
+  /// Those of one variable that do not vanish.
+  struct Functions {
+    int first = 0;
+    std::array<double, kMaxSplineDegree + 1> value;
+  };
+
+  int degree(int axis) const { return (axis == 0 ? space_.u : space_.v).degree; }
+
+  Functions functions(int axis, double t, int order) const {
+    BasisFunctions basis;
+    basisFunctions(knots_[axis], degree(axis), t, order, basis);
+    return {basis.first, basis.value[order]};
+  }
+
+  void append(const Functions& u, const Functions& v, double factor, Terms& terms) const {
+    for (int j = 0; j <= degree(1); ++j)
+      for (int i = 0; i <= degree(0); ++i) {
+        const double value = factor * u.value[i] * v.value[j];
+        if (value != 0) terms.push_back({offset_ + u.first + i + space_.u.unknowns() * (v.first + j), value});
+      }
+  }
+
   const SplineSpace& space_;
   int offset_;
-  std::vector<double> knotsU_, knotsV_;
+  std::array<std::vector<double>, 2> knots_;
 };
 
 Eigen::Vector2d turned(const Eigen::Vector2d& d, int quarters) {
@@ -102,18 +125,22 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
   // The first chart lies to the left.
   const Eigen::Vector2d over0(along0[1], -along0[0]), over1 = turned(over0, border.across.rotation);
 
+  // Beyond the boundary up to the next knot of either side: that far the polynomials are the same anyway.
   double low = 0, high = length;
   const auto& startPoint = layout_.points[border.startPoint];
   const auto& endPoint = layout_.points[border.endPoint];
-  if (!startPoint.inner()) low = std::max({-kBeyondBoundary, breaks[0].front(), breaks[1].front()});
-  if (!endPoint.inner()) high = std::min({length + kBeyondBoundary, breaks[0].back(), breaks[1].back()});
-  std::vector<double> ends{low, high};
-  for (int k : {0, 1})
-    for (const double s : breaks[k])
-      if (s > low + kSame && s < high - kSame) ends.push_back(s);
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kSame; }),
-             ends.end());
+  if (!startPoint.inner()) {
+    low = std::max(breaks[0].front(), breaks[1].front());
+    for (int k : {0, 1})
+      for (const double s : breaks[k])
+        if (s <= -kBeyondBoundary + kSame) low = std::max(low, s);
+  }
+  if (!endPoint.inner()) {
+    high = std::min(breaks[0].back(), breaks[1].back());
+    for (int k : {0, 1})
+      for (const double s : breaks[k])
+        if (s >= length + kBeyondBoundary - kSame) high = std::min(high, s);
+  }
 
   // How far the influence of a singularity at an end reaches.
   const auto reach = [&](bool atStart) {
@@ -149,25 +176,60 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
     return condition;
   };
 
-  const int points =
-      std::max({space[0]->u.degree, space[0]->v.degree, space[1]->u.degree, space[1]->v.degree}) + 1;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double width = (ends[i + 1] - ends[i]) / points;
-    for (int k = 0; k < points; ++k) {
-      const double s = ends[i] + (k + 0.5) * width;
-      Condition equal{{}, kExactWeight * width, true};
-      side[0].append(border.start[0] + s * along0, 0, 0, 1, equal.terms);
-      side[1].append(border.start[1] + s * along1, 0, 0, -1, equal.terms);
+  // Splines over the knots of both sides agree on an interval where their poles do, and these conditions are
+  // well conditioned.
+  const int degree = space[0]->u.degree;
+  TRIMQUAD_ASSERT(space[0]->v.degree == degree && space[1]->u.degree == degree &&
+                  space[1]->v.degree == degree);
+  const auto merged = [&](double from, double to) {
+    std::vector<double> ends{from, to};
+    for (int k : {0, 1})
+      for (const double s : breaks[k])
+        if (s > from + kSame && s < to - kSame) ends.push_back(s);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kSame; }),
+               ends.end());
+    return ends;
+  };
+  const auto sameSplines = [&](double from, double to, int order) {
+    if (!(to - from > kSame)) return;
+    const auto knots = SplineLine{degree, false, merged(from, to)}.knots();
+    std::vector<double> arguments(degree);
+    for (int i = 0; i + degree + 1 < int(knots.size()); ++i) {
+      const int span = knotSpan(knots, degree, (knots[i] + knots[i + degree + 1]) / 2);
+      const double at = (knots[span] + knots[span + 1]) / 2;
+      Condition equal{{}, kExactWeight * (knots[i + degree + 1] - knots[i]) / (degree + 1), true};
+      for (int k : {0, 1}) {
+        const Eigen::Vector2d &along = k == 0 ? along0 : along1, &over = k == 0 ? over0 : over1;
+        const int axis = 1 - border.axis(k);
+        const double start = border.start[k][axis], sign = along[axis];
+        for (int j = 0; j < degree; ++j) arguments[j] = start + sign * knots[i + 1 + j];
+        side[k].appendPolar(axis, start + sign * at, arguments, border.start[k][1 - axis], order,
+                            (k == 0 ? 1 : -1) * (order == 1 ? over[1 - axis] : 1), equal.terms);
+      }
       conditions.push_back(std::move(equal));
-      if (border.feature) continue;
-      const bool near = (reachStart > 0 && s < reachStart) || (reachEnd > 0 && length - s < reachEnd);
-      Condition smooth = acrossAt(s);
-      smooth.weight = (near ? tangentWeight : kExactWeight) * width;
-      smooth.exact = !near;
-      conditions.push_back(std::move(smooth));
     }
-  }
+  };
+  sameSplines(low, high, 0);
   if (border.feature) return;
+  const double nearEnd = std::min(reachStart > 0 ? reachStart : low, high),
+               farEnd = std::max(reachEnd > 0 ? length - reachEnd : high, nearEnd);
+  sameSplines(nearEnd, farEnd, 1);
+  const auto nearly = [&](double from, double to) {
+    if (!(to - from > kSame)) return;
+    const auto ends = merged(from, to);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const double width = (ends[i + 1] - ends[i]) / (degree + 1);
+      for (int k = 0; k <= degree; ++k) {
+        Condition smooth = acrossAt(ends[i] + (k + 0.5) * width);
+        smooth.weight = tangentWeight * width;
+        smooth.exact = false;
+        conditions.push_back(std::move(smooth));
+      }
+    }
+  };
+  nearly(low, nearEnd);
+  nearly(farEnd, high);
   for (const bool start : {true, false})
     if ((start ? reachStart : reachEnd) > 0) {
       Condition flat = acrossAt(start ? 0 : length);

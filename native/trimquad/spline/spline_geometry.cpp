@@ -66,6 +66,24 @@ void basisFunctions(std::span<const double> knots, int degree, double t, int ord
     for (int j = 0; j <= degree; ++j) result.value[k][j] = 0;
 }
 
+int polarForm(std::span<const double> knots, int degree, double at, std::span<const double> arguments,
+              std::span<double> weight) {
+  TRIMQUAD_ASSERT(int(arguments.size()) == degree && int(weight.size()) > degree);
+  const int span = knotSpan(knots, degree, at);
+  weight[0] = 1;
+  for (int j = 1; j <= degree; ++j) {
+    double saved = 0;
+    for (int r = 0; r < j; ++r) {
+      const double left = knots[span + 1 - j + r], right = knots[span + 1 + r];
+      const double part = weight[r] / (right - left);
+      weight[r] = saved + (right - arguments[j - 1]) * part;
+      saved = (arguments[j - 1] - left) * part;
+    }
+    weight[j] = saved;
+  }
+  return span - degree;
+}
+
 template <int Dim>
 std::vector<typename SplineCurve<Dim>::Point> SplineCurve<Dim>::derivatives(double t, int order) const {
   BasisFunctions basis;

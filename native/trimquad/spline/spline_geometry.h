@@ -26,6 +26,13 @@ int knotSpan(std::span<const double> knots, int degree, double t);
 /// written). Outside the domain the polynomials of the end spans continue. Does not allocate.
 void basisFunctions(std::span<const double> knots, int degree, double t, int order, BasisFunctions& result);
 
+/// The polar form of the polynomials of the knot span that holds `at`, evaluated at `arguments`, as many as
+/// the degree, in any order: a spline's value there is the sum of weight[j] * pole[first + j]. With
+/// consecutive knots of a finer spline as arguments it is that one's pole. (Ramshaw) Returns first; writes
+/// degree + 1 weights.
+int polarForm(std::span<const double> knots, int degree, double at, std::span<const double> arguments,
+              std::span<double> weight);
+
 /// A B-spline curve in dimension `Dim`, with a clamped, flat knot vector (each knot repeated by its
 /// multiplicity; knots.size() == poles.size() + degree + 1). Not rational.
 template <int Dim>

@@ -74,6 +74,28 @@ TEST(GridMap, holesLeaveTheMapInOneChart) {
   EXPECT_EQ(period(map), Eigen::Vector2d(0, 0));
 }
 
+TEST(GridMap, holesOfATubeKeepTheirPlaces) {
+  // Their rims lie anywhere between the grid lines; only once around is it a whole number of quads.
+  const auto inside = [](double s, double t) {
+    for (const double hole : {0.11, 0.29, 0.52, 0.77})
+      if (std::hypot(s - hole, 0.4 * (t - hole)) < 0.06) return false;
+    return true;
+  };
+  for (const auto& shape : {sample::cylinder, sample::elbow})
+    for (const double edgeLength : {0.1, 0.23, 0.61}) {
+      const GridMap map = mapOf(sample::region(sample::tube(60, 40, shape, inside)), edgeLength);
+      const Eigen::Vector2d around = period(map).cwiseAbs();
+      EXPECT_EQ(around.minCoeff(), 0);
+      for (const auto h : map.mesh.halfedges()) {
+        if (map.mesh.is_boundary(map.mesh.edge_handle(h))) continue;
+        const auto t = map.transition(h);
+        EXPECT_EQ(t.rotation, 0);
+        if (t.isIdentity()) continue;
+        EXPECT_EQ(map.scale.toQuads(t.translation).cwiseAbs(), around);
+      }
+    }
+}
+
 TEST(GridMap, domeBeyondTheEquatorUntangles) {
   for (const double degrees : {60.0, 90.0, 120.0}) {
     const GridMap map = mapOf(

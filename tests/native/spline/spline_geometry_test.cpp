@@ -94,6 +94,22 @@ TEST(SplineGeometry, knotInsertionAndRestrictionKeepTheCurve) {
   }
 }
 
+TEST(SplineGeometry, polarFormsAtTheKnotsOfAFinerSplineAreItsPoles) {
+  for (int degree : {1, 2, 3, 5}) {
+    const auto curve = randomCurve<2>(degree, 20 + degree);
+    const auto finer = withKnot(withKnot(withKnot(curve, 0.5), 0.7), 1.75, degree);
+    std::vector<double> weight(degree + 1);
+    for (int i = 0; i < int(finer.poles.size()); ++i) {
+      const auto arguments = std::span(finer.knots).subspan(i + 1, degree);
+      const double middle = (finer.knots[i] + finer.knots[i + degree + 1]) / 2;
+      const int first = polarForm(curve.knots, degree, middle, arguments, weight);
+      Eigen::Vector2d pole = Eigen::Vector2d::Zero();
+      for (int j = 0; j <= degree; ++j) pole += weight[j] * curve.poles[first + j];
+      EXPECT_LT((pole - finer.poles[i]).norm(), 1e-12) << degree << " " << i;
+    }
+  }
+}
+
 TEST(SplineGeometry, jetAgreesWithGeneralDerivativesAndIsoCurvesWithPoints) {
   const auto s = randomSurface(3, 2, 5);
   const auto finer = withKnotV(withKnotU(s, 2.5, 2), 0.3);
