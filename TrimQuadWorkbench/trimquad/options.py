@@ -26,6 +26,7 @@ class Options:
 
     align, free      names of edges: 'Edge3' of CAD; 'loop:2', 'loop:2/1', 'feature:0', 'angle:30-90' of meshes
     feature_points   names of CAD vertices, or points: 'Vertex5', '1.5,2,0', (1.5, 2, 0), or '1.5', '2', '0' in a row
+    fill_holes       boundary loops shorter than this are bridged for the map and cut out again; 0: none
     field            'curvature', 'smooth', or the path of a file of directions
     field_weight     how closely the field follows it, 0 to 1; None: 0.1 for 'curvature', 1 for a file
     """
@@ -100,7 +101,6 @@ class Options:
     def _refuse_missing_stages(self):
         for given, what in (
             (self.field == "stress", "--field stress"),
-            (self.fill_holes > 0, "--fill-holes"),
         ):
             if given:
                 raise input_error("options", f"{what} is not in this version yet; leave it out")
