@@ -430,6 +430,8 @@ def _try_region(item, index, result, progress):
         _grid_map(item, index, result, run)
     if options.wants("extract"):
         item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
+        if options.merge_slivers > 0:
+            native.merge_slivers(item.quads, options.merge_slivers)
     if options.wants("fit"):
         item.fitted = run("fit", _fit, item, result)
 

@@ -10,6 +10,10 @@
 namespace trimquad {
 namespace {
 
+/// Least facing (see facingOf) of a hole: about 75 degrees. Lower than that of a triangle missing in a corner
+/// of a box, higher than what noise makes of a tube's end.
+constexpr double kHole = 0.25;
+
 using Loop = std::vector<HalfedgeHandle>;  // boundary halfedges
 
 double lengthOf(const SurfaceMesh& mesh, const Loop& loop) {
@@ -18,7 +22,8 @@ double lengthOf(const SurfaceMesh& mesh, const Loop& loop) {
   return length;
 }
 
-/// How far the boundary turns to the left in total, radians, with the surface on its left.
+/// How far the boundary turns to the left in total, with the surface on its left: radians, -2 pi for a hole
+/// in the plane, 2 pi for an outer boundary.
 double turnOf(const SurfaceMesh& mesh, const Loop& loop) {
   double turn = 0;
   for (const auto h : loop) {
@@ -27,6 +32,20 @@ double turnOf(const SurfaceMesh& mesh, const Loop& loop) {
       if (!mesh.is_boundary(out)) turn -= cornerAngle(mesh, out);
   }
   return turn;
+}
+
+/// Where the triangles along a loop face, against the side to which a cap of the loop would: the cosine, in
+/// the mean over the loop's length. 1 for a hole in the plane, 0 for a tube's end, -1 for an outer boundary.
+double facingOf(const SurfaceMesh& mesh, const Loop& loop) {
+  const Eigen::Vector3d origin = mesh.point(mesh.from_vertex_handle(loop.front()));
+  Eigen::Vector3d cap(0, 0, 0), around(0, 0, 0);
+  for (const auto h : loop) {
+    cap += (mesh.point(mesh.from_vertex_handle(h)) - origin)
+               .cross(mesh.point(mesh.to_vertex_handle(h)) - origin);
+    around +=
+        mesh.calc_edge_length(h) * mesh.calc_face_normal(mesh.face_handle(mesh.opposite_halfedge_handle(h)));
+  }
+  return cap.normalized().dot(around) / lengthOf(mesh, loop);
 }
 
 /// Mean length of the edges of the triangles along a loop.
@@ -141,7 +160,7 @@ HoleCounts bridgeHoles(Region& region, double length, const Progress& progress) 
   TriangleSoup soup = soupOf(mesh);
   for (const auto& loop : boundaryLoops(mesh)) {
     if (!(lengthOf(mesh, loop) < length)) continue;
-    if (turnOf(mesh, loop) > -std::numbers::pi)
+    if (turnOf(mesh, loop) >= 0 || facingOf(mesh, loop) < kHole)
       ++counts.ends;
     else if (std::any_of(loop.begin(), loop.end(),
                          [&](HalfedgeHandle h) { return aligned[mesh.edge_handle(h).idx()]; }))

@@ -9,15 +9,15 @@ namespace trimquad {
 /// What became of the boundary loops shorter than asked for.
 struct HoleCounts {
   int bridged = 0;
-  int aligned = 0;  ///< kept, since grid lines are to run along them
-  int ends = 0;     ///< kept, since the surface does not go around them: ends of tubes, outer boundaries
+  int aligned = 0;    ///< kept, since grid lines are to run along them
+  int ends = 0;       ///< kept, since the surface would not go on over them: ends of tubes, outer boundaries
   int inBridges = 0;  ///< triangles that bridge
 };
 
 /// Bridges the holes of a region by triangles of about the size of those around (Region::bridge), behind its
 /// own ones, which keep their numbers, as its vertices do. A hole is a boundary loop shorter than `length`
-/// (model units) without aligned edges that the surface goes around: in total the loop turns more than half
-/// way from a tube's end (0) to a hole in the plane (one full turn to the other side).
+/// (model units) without aligned edges that turns around what is missing, and along which the surface faces
+/// the side that its bridge does, up to 75 degrees in the mean: ends of tubes and outer boundaries are none.
 /// Throws Error(Stage, "bridge") for a hole so narrow that its bridge would have no area.
 HoleCounts bridgeHoles(Region& region, double length, const Progress& progress);
 

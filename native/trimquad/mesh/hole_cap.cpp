@@ -36,9 +36,7 @@ class CapSurface : public TrueSurface {
   Foot closestFacing(const Vector3d& p, const Vector3d& facing) const override {
     return triangles_.closestFacing(p, facing);
   }
-  Curvature curvature(const Vector3d&) const override {
-    return {Vector3d::UnitX(), Vector3d::UnitY(), 0, 0};
-  }
+  Curvature curvature(const Vector3d&) const override { return {Vector3d::UnitX(), Vector3d::UnitY(), 0, 0}; }
 
  private:
   TriangleSurface triangles_;
@@ -58,8 +56,8 @@ Model capModel(const std::vector<Vector3d>& loop, std::vector<std::array<int, 3>
   model.corners = loop;
   for (int k = 0; k < n; ++k) {
     const int next = (k + 1) % n;
-    model.curves.push_back({std::make_shared<PolylineCurve>(std::vector{loop[k], loop[next]}), CornerId{k},
-                            CornerId{next}, ""});
+    model.curves.push_back(
+        {std::make_shared<PolylineCurve>(std::vector{loop[k], loop[next]}), CornerId{k}, CornerId{next}, ""});
     const auto side = cap.mesh.find_halfedge(VertexHandle(k), VertexHandle(next));
     cap.edgeCurve[cap.mesh.edge_handle(side).idx()] = CurveId{k};
     cap.corner.push_back(CornerId{k});
