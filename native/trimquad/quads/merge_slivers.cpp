@@ -1,161 +1,124 @@
 #include "trimquad/quads/merge_slivers.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
-#include <tuple>
 
-#include "trimquad/base/error.h"
+#include "trimquad/quads/cell_merge.h"
 
 namespace trimquad {
 namespace {
 
-using Side = std::array<QuadPointId, 2>;  // in the direction of the cell to its left
+using Side = CellMerge::Side;
 
-Side reversed(const Side& side) {
-  return {side[1], side[0]};
+/// Area of a cell that vanishes, as a fraction of a whole one.
+constexpr double kVanishing = 1e-6;
+
+bool isSliver(const QuadMesh::Cell& cell, double fraction) {
+  return !cell.full && cell.area < fraction && cell.loops.size() == 1 && cell.simple.empty();
 }
 
-class SliverMerge {
- public:
-  SliverMerge(QuadMesh& quads, double fraction)
-      : quads_(quads),
-        fraction_(fraction),
-        mergedInto_(quads.cells.size()),
-        feature_(quads.featureEdges.begin(), quads.featureEdges.end()) {
-    for (int c = 0; c < int(quads_.cells.size()); ++c) {
-      for (const auto& side : sidesOf(c))
-        if (!cellAt_.emplace(side, c).second) doubled_.insert(side);
-      addIfSliver(c);
-    }
-  }
+double length(const CellMerge& cells, const Side& side) {
+  return (cells[side[1]].position - cells[side[0]].position).norm();
+}
 
-  int run() {
-    int merged = 0;
-    while (!slivers_.empty()) {
-      const int sliver = slivers_.begin()->second;
-      slivers_.erase(slivers_.begin());
-      if (const auto side = sideToRemove(sliver)) {
-        merge(sliver, *side);
-        ++merged;
+/// How a vanishing cell goes.
+struct Drop {
+  std::vector<std::pair<CellId, Side>>
+      merges;              ///< it, and triangles beside it of which nothing would be left
+  std::vector<Side> ways;  ///< of grid points to the boundary
+
+  /// Whether it can go across a side. Its inner ends take its other sides there to the boundary.
+  static std::optional<Drop> across(const CellMerge& cells, CellId cell, const Side& removed) {
+    Drop drop;
+    drop.merges.push_back({cell, removed});
+    for (const auto& side : cells.sidesOf(cell))
+      for (const auto& way : {side, CellMerge::reversed(side)}) {
+        const bool fromEnd = way[0] == removed[0] || way[0] == removed[1];
+        const bool isRemoved = fromEnd && (way[1] == removed[0] || way[1] == removed[1]);
+        if (!fromEnd || isRemoved || cells[way[0]].border) continue;
+        if (!drop.add(cells, cell, way)) return {};
       }
-    }
-    if (merged > 0) compact();
-    return merged;
+    std::vector<CellId> into;
+    for (const auto& [gone, side] : drop.merges) into.push_back(cells.across(side).value());
+    std::sort(into.begin(), into.end());
+    const bool distinct = std::adjacent_find(into.begin(), into.end()) == into.end();
+    if (!distinct || (drop.ways.size() == 2 && drop.ways[0][1] == drop.ways[1][1])) return {};
+    return drop;
   }
 
  private:
-  std::vector<Side> sidesOf(int cell) const {
-    std::vector<Side> sides;
-    for (const auto& loop : quads_.cells[cell].loops)
-      for (size_t k = 0; k < loop.size(); ++k) sides.push_back({loop[k], loop[(k + 1) % loop.size()]});
-    return sides;
-  }
-
-  std::set<QuadPointId> pointsOf(int cell) const {
-    std::set<QuadPointId> points;
-    for (const auto& loop : quads_.cells[cell].loops) points.insert(loop.begin(), loop.end());
-    return points;
-  }
-
-  void addIfSliver(int cell) {
-    const auto& c = quads_.cells[cell];
-    if (!c.full && c.area < fraction_ && c.loops.size() == 1 && c.simple.empty())
-      slivers_.insert({c.area, cell});
-  }
-
-  std::optional<Side> sideToRemove(int sliver) const {
-    const auto points = pointsOf(sliver);
-    std::optional<Side> best;
-    double longest = -1;
-    for (const auto& side : sidesOf(sliver)) {
-      const double length =
-          (quads_.points[side[1].index].position - quads_.points[side[0].index].position).norm();
-      if (length > longest && isRemovable(sliver, side, points)) best = side, longest = length;
+  bool add(const CellMerge& cells, CellId cell, const Side& way) {
+    if (cells[way[0]].quads != 4 || length(cells, way) > length(cells, merges[0].second)) return false;
+    const auto left = cells.across(CellMerge::reversed(way)), right = cells.across(way);
+    if (!left || !right) return false;
+    const CellId beside = *left == cell ? *right : *left;
+    if (beside == cell || beside == cells.across(merges[0].second)) return false;
+    for (const auto& [gone, side] : merges)
+      if (gone == beside || cells.across(side) == beside) return false;
+    std::vector<CellId> merged{cell};
+    if (isSliver(cells[beside], kVanishing) && cells[beside].loops[0].size() == 3) {
+      const auto sides = cells.sidesOf(beside);
+      const auto side = std::find_if(sides.begin(), sides.end(), [&](const Side& s) {
+        return std::count(s.begin(), s.end(), way[0]) == 1 && std::count(s.begin(), s.end(), way[1]) == 0;
+      });
+      if (side == sides.end() || !cells.isMergeable(beside, *side)) return false;
+      merges.push_back({beside, *side});
+      merged.push_back(beside);
     }
-    return best;
+    ways.push_back(way);
+    return cells.isCollapsible(way, merged);
   }
-
-  /// Whether the cells to both sides have nothing else in common.
-  bool isRemovable(int sliver, const Side& side, const std::set<QuadPointId>& points) const {
-    const auto across = cellAt_.find(reversed(side));
-    if (across == cellAt_.end() || across->second == sliver) return false;
-    if (doubled_.count(side) || doubled_.count(reversed(side))) return false;
-    if (feature_.count(side) || feature_.count(reversed(side))) return false;
-    const auto others = pointsOf(across->second);
-    return std::count_if(points.begin(), points.end(), [&](QuadPointId p) { return others.count(p) > 0; }) ==
-           2;
-  }
-
-  void merge(int sliver, const Side& side) {
-    const int into = cellAt_.at(reversed(side));
-    for (const auto& s : sidesOf(sliver)) cellAt_[s] = into;
-    cellAt_.erase(side);
-    cellAt_.erase(reversed(side));
-    auto& cell = quads_.cells[into];
-    const auto& loop = quads_.cells[sliver].loops[0];
-    const bool inLoops = replaceSide(cell.loops, reversed(side), loop);
-    const bool inSimple = cell.simple.empty() || replaceSide(cell.simple, reversed(side), loop);
-    TRIMQUAD_ASSERT(inLoops && inSimple);
-    slivers_.erase({cell.area, into});
-    cell.area += quads_.cells[sliver].area;
-    cell.full = false;
-    mergedInto_[sliver] = into;
-    addIfSliver(into);
-  }
-
-  /// Puts what the loop has beside the reversed side in the place of the side.
-  static bool replaceSide(std::vector<QuadMesh::Polygon>& polygons, const Side& side,
-                          const QuadMesh::Polygon& loop) {
-    const auto start = std::find(loop.begin(), loop.end(), side[0]);  // the loop comes here from side[1]
-    QuadMesh::Polygon detour(start + 1, loop.end());
-    detour.insert(detour.end(), loop.begin(), start);
-    detour.pop_back();
-    for (auto& polygon : polygons)
-      for (size_t k = 0; k < polygon.size(); ++k)
-        if (polygon[k] == side[0] && polygon[(k + 1) % polygon.size()] == side[1]) {
-          polygon.insert(polygon.begin() + long(k) + 1, detour.begin(), detour.end());
-          return true;
-        }
-    return false;
-  }
-
-  void compact() {
-    std::vector<CellId> number;
-    std::vector<QuadMesh::Cell> cells;
-    for (size_t c = 0; c < quads_.cells.size(); ++c) {
-      number.push_back({int(cells.size())});
-      if (!mergedInto_[c]) cells.push_back(std::move(quads_.cells[c]));
-    }
-    quads_.cells = std::move(cells);
-    for (auto& piece : quads_.boundary) {
-      int cell = piece.cell.index;
-      while (mergedInto_[cell]) cell = *mergedInto_[cell];
-      piece.cell = number[cell];
-    }
-    std::vector<bool> crossed(quads_.points.size(), false);
-    for (const auto& [side, cell] : cellAt_)
-      if (cellAt_.count(reversed(side))) crossed[side[0].index] = true;
-    for (size_t p = 0; p < crossed.size(); ++p)
-      if (quads_.points[p].kind == QuadMesh::PointKind::Crossing && !crossed[p])
-        quads_.points[p].kind = QuadMesh::PointKind::Boundary;
-  }
-
-  QuadMesh& quads_;
-  const double fraction_;
-  std::vector<std::optional<int>> mergedInto_;  ///< by cell
-  const std::set<Side> feature_;
-  std::map<Side, int> cellAt_;  ///< the cell to the left
-  std::set<Side> doubled_;      ///< sides that several cells have
-  std::set<std::pair<double, int>> slivers_;
 };
 
 }  // namespace
 
 int mergeSlivers(QuadMesh& quads, double fraction) {
-  const int merged = SliverMerge(quads, fraction).run();
+  CellMerge cells(quads);
+  std::set<std::pair<double, CellId>> slivers;
+  const auto addIfSliver = [&](CellId id) {
+    if (isSliver(cells[id], fraction)) slivers.insert({cells[id].area, id});
+  };
+  for (int c = 0; c < int(quads.cells.size()); ++c) addIfSliver({c});
+  int merged = 0;
+  while (!slivers.empty()) {
+    const CellId sliver = slivers.begin()->second;
+    slivers.erase(slivers.begin());
+    const auto side = cells.mergeableSide(sliver);
+    if (!side) continue;
+    const CellId into = cells.across(*side).value();
+    slivers.erase({cells[into].area, into});
+    cells.merge(sliver, *side);
+    addIfSliver(into);
+    ++merged;
+  }
+  if (merged > 0) cells.finish();
   quads.mergedSlivers += merged;
   return merged;
+}
+
+int dropVanishingCells(QuadMesh& quads) {
+  CellMerge cells(quads);
+  int dropped = 0;
+  for (int c = 0; c < int(quads.cells.size()); ++c) {
+    const CellId cell{c};
+    if (cells.isGone(cell) || !isSliver(cells[cell], kVanishing)) continue;
+    const auto side = cells.mergeableSide(cell);
+    const auto drop = side ? Drop::across(cells, cell, *side) : std::nullopt;
+    if (!drop) continue;
+    std::vector<CellId> whole;
+    for (const auto& [gone, removed] : drop->merges) {
+      const CellId into = cells.across(removed).value();
+      if (cells[into].full) whole.push_back(into);
+      cells.merge(gone, removed);
+      ++dropped;
+    }
+    for (const auto& way : drop->ways) cells.collapse(way);
+    for (const CellId id : whole)
+      if (cells[id].loops[0].size() == 4) cells.markWhole(id);
+  }
+  if (dropped > 0) cells.finish();
+  quads.droppedSlivers += dropped;
+  return dropped;
 }
 
 }  // namespace trimquad
