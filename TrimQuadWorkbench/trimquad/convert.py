@@ -312,7 +312,10 @@ def _grid_map(item, index, result, run):
             if route == "direct" or error.kind != "stage":
                 raise
     # The model's region gets the refined mesh; field and seamless map are of the one before.
-    item.region = native.copy_region(item.region)
+    before = native.copy_region(item.region)
+    if item.bridged is item.region:
+        item.bridged = before
+    item.region = before
     embedded = run("reembed", native.embed, item.seamless, item.tmesh, item.quantization)
     item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.bridged, item.seamless,
                                    embedded)

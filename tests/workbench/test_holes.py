@@ -114,7 +114,7 @@ def test_bridged_holes_are_cut_out_of_every_result(tmp_path, route):
     assert report["singularities"]["loop_turns"] == [4], "the field does not know the holes"
     item = result.regions[0]
     assert euler(item) == item.quads.euler == -1
-    assert len(item.directions) == item.region.triangles if route == "reembed" else len(triangles)
+    assert len(item.directions) == item.region.triangles == len(triangles)
 
     area = area_of(points, triangles)
     for name in ("seamless.obj", "gridmap.obj"):
@@ -188,6 +188,24 @@ def test_aligned_holes_and_ends_of_tubes_stay_and_a_warning_says_so():
     result = trimquad.convert((tube, triangles), trimquad.Options(quads=100, fill_holes=50.0, write=["seamless"]))
     assert result.regions[0].holes == {"bridged": 0, "aligned": 0, "ends": 2}
     assert "2 are ends of surfaces" in result.warnings[0]
+
+
+@pytest.mark.parametrize("route", ["direct", "reembed"])
+def test_a_drilled_plate_stays_a_solid(route):
+    import FreeCAD
+    import Part
+
+    plate = Part.makeBox(60, 40, 5)
+    for x, y, radius in ((15, 12, 4), (40, 25, 6)):
+        plate = plate.cut(Part.makeCylinder(radius, 9, FreeCAD.Vector(x, y, -2)))
+    result = trimquad.convert(plate, trimquad.Options(edge_length=4.0, fill_holes=50.0, route=route))
+    assert result.failed == []
+    holes = [item.holes for item in result.regions]
+    assert sum(h["bridged"] for h in holes) == 4, "two holes in each of two faces"
+    assert sum(h["ends"] for h in holes) == 4, "the walls of the holes are tubes"
+    assert result.shape.isValid() and result.shape.ShapeType == "Solid"
+    assert result.spline.loose_edges == 0
+    assert result.shape.Volume == pytest.approx(plate.Volume, rel=1e-3)
 
 
 def test_directions_from_a_file_go_with_bridges(tmp_path):
