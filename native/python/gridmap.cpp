@@ -37,8 +37,8 @@ void bindGridMap(py::module_& m) {
       "The T-mesh on edges of a refined mesh, its zero arcs collapsed: the constructive route.");
   m.def(
       "embedded_grid_map",
-      [](Model& model, int index, const Region& bridged, const SeamlessMap& seamless, const EmbeddedTMesh& embedded,
-         const Progress& progress) {
+      [](Model& model, int index, const Region& bridged, const SeamlessMap& seamless,
+         const EmbeddedTMesh& embedded, const Progress& progress) {
         const PatchMap patches = constructiveMap(seamless, embedded, progress);
         GridMap map = optimizedPatchMap(seamless, patches, progress);
         const Region refined = refinedRegion(bridged, model.curves, patches.embedded.surface);
@@ -53,11 +53,10 @@ void bindGridMap(py::module_& m) {
                 {"splits", counters.splits + patches.splits}});
       },
       py::arg("model"), py::arg("index"), py::arg("bridged"), py::arg("seamless"), py::arg("embedded"),
-      py::arg("progress"),
-      Released(),
+      py::arg("progress"), Released(),
       "The optimised grid map of an embedded T-mesh, and counters. The region of the model gets the refined "
-      "mesh that the map is of. `bridged` is the region that the seamless map is of; what bridges its holes is "
-      "in neither.");
+      "mesh that the map is of. `bridged` is the region that the seamless map is of; what bridges its holes "
+      "is in neither.");
   m.def(
       "grid_map",
       [](const Region& bridged, const SeamlessMap& seamless, const TMesh& tmesh,

@@ -175,8 +175,8 @@ void bindRegion(py::module_& m) {
       },
       py::arg("model"), py::arg("index"), py::arg("length"), py::arg("progress"), Released(),
       "A region of the model with its holes shorter than `length` bridged, and how many boundary loops were "
-      "bridged, not bridged because they are aligned, or because they are no holes. Vertices and triangles of "
-      "the model's region keep their numbers.");
+      "bridged, not bridged because they are aligned, or because they are no holes. Vertices and triangles "
+      "of the model's region keep their numbers.");
   py::class_<Region>(m, "Region")
       .def_readonly("name", &Region::name)
       .def_property_readonly(

@@ -33,7 +33,8 @@ void bindSeamless(py::module_& m) {
   m.def(
       "without_bridges",
       [](const SeamlessMap& map, const Region& bridged) { return withoutBridges(map, bridged); },
-      py::arg("map"), py::arg("bridged"), Released(), "The map of the region alone, without what bridges its holes.");
+      py::arg("map"), py::arg("bridged"), Released(),
+      "The map of the region alone, without what bridges its holes.");
   py::class_<SeamlessMap>(m, "SeamlessMap")
       .def_property_readonly("counters", [](const SeamlessMap& map) { return countersOf(map.counters); })
       .def_property_readonly("arrays", [](const SeamlessMap& map) { return arraysOf(map); })
