@@ -61,7 +61,10 @@ def _parser():
                    help="what the cross field follows (default curvature)")
     p.add_argument("--field-weight", type=float, metavar="W",
                    help="how closely, from 0, smooth, to 1, aligned (default 0.1 for curvature, 1 for a file)")
-    p.add_argument("--fill-holes", type=float, metavar="L", help="bridge boundary loops shorter than L (default 0)")
+    p.add_argument("--fill-holes", type=float, metavar="L",
+                   help="bridge holes whose boundary is shorter than L for the map, and cut them out again (default 0: none)")
+    p.add_argument("--merge-slivers", type=float, metavar="FRACTION",
+                   help="trimmed cells under this fraction of a whole cell merge with a neighbour (default 0: none)")
     p.add_argument("--optimal", action="store_true", default=None, help="quantize to proven optimality")
     p.add_argument("--tolerance", type=float, metavar="T", help="largest deviation, in the input's unit")
     p.add_argument("--relative-tolerance", type=float, metavar="R",

@@ -38,12 +38,15 @@ class RegionResult:
     """What became of one region. Stages that were not reached are None; `error` says why.
 
     name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
-    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds.
+    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds;
+    holes: what became of boundary loops shorter than `fill_holes`; bridged: the region with its holes bridged, which
+    field, seamless and tmesh are of (the region itself where no hole is).
     """
 
     def __init__(self, region):
         self.name = region.name
-        self.region = self.mapped_region = region
+        self.region = self.mapped_region = self.bridged = region
+        self.holes = None
         self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
@@ -60,20 +63,38 @@ class RegionResult:
     @property
     def directions(self):
         """The cross field, or None: by triangle of the region one of its four unit directions, array (m, 3)."""
-        return None if self.field is None else self.field.directions
+        return None if self.field is None else self.field.directions[: self.region.triangles]
 
     @property
     def singularities(self):
-        """Singular vertices of the cross field: a list of Singularity, empty before the field is there."""
+        """Singular vertices of the cross field: a list of Singularity, empty before the field is there. Those in holes
+        that were bridged are not on the surface and not in the list."""
         if self.field is None:
             return []
-        points = self.region.points
-        return [Singularity(v, index, tuple(points[v])) for v, index in self.field.singular_vertices]
+        points, bridges = self.region.points, self._vertices_of_bridges()
+        singular = [(v, index) for v, index in self.field.singular_vertices if v not in bridges]
+        return [Singularity(v, index, tuple(points[v])) for v, index in singular]
+
+    @property
+    def bridged_singularities(self):
+        """How many singular vertices of the cross field lie in holes that were bridged."""
+        return 0 if self.field is None else len(self.field.singular_vertices) - len(self.singularities)
+
+    def _vertices_of_bridges(self):
+        corners, first = self.bridged.corners, self.region.triangles
+        return set(corners[first:].ravel().tolist())  # bridges come last
+
+    @property
+    def seamless_map(self):
+        """The seamless map of the region, without what bridges its holes; or None."""
+        if self.seamless is None or not self.bridged.bridge:
+            return self.seamless
+        return load().without_bridges(self.seamless, self.bridged)
 
     @property
     def map(self):
         """The finest map that was reached (the grid map, else the seamless one) as a SurfaceMap, or None."""
-        found = self.grid or self.seamless
+        found = self.grid or self.seamless_map
         return None if found is None else SurfaceMap(*found.arrays)
 
 
@@ -177,6 +198,7 @@ def _convert(source, options, progress):
     result.started = started
     result.seconds["tessellate"] = time.monotonic() - started
     _map_regions(result, progress)
+    _warn_of_holes(result)
     _trim(result, progress)
     _check(result, progress)
     return result
@@ -265,22 +287,38 @@ def _map_regions(result, progress):
             )
 
 
+def _warn_of_holes(result):
+    """Where holes were to be bridged, but none was."""
+    counts = [item.holes for item in result.regions if item.holes is not None]
+    if not counts or any(c["bridged"] for c in counts):
+        return
+    aligned, ends = (sum(c[kind] for c in counts) for kind in ("aligned", "ends"))
+    reasons = [f"{aligned} are aligned (--free sets them free)"] if aligned else []
+    reasons += [f"{ends} are ends of surfaces, not holes in them"] if ends else []
+    which = f": of the shorter boundary loops {', '.join(reasons)}" if reasons else "; no boundary loop is shorter"
+    result.warnings.append(f"--fill-holes {result.options.fill_holes:.6g} bridges no hole{which}")
+
+
 def _grid_map(item, index, result, run):
     """By the direct route, the constructive one, or the first and where it fails the other."""
     native = load()
     route = result.options.route
     if route != "reembed":
         try:
-            item.grid = run("optimize", native.grid_map, item.seamless, item.tmesh, item.quantization)
+            item.grid = run("optimize", native.grid_map, item.bridged, item.seamless, item.tmesh, item.quantization)
             item.embedding = {"route": "direct", "inserted_vertices": 0, "collapses": 0, "splits": 0}
             return
         except Error as error:
             if route == "direct" or error.kind != "stage":
                 raise
     # The model's region gets the refined mesh; field and seamless map are of the one before.
-    item.region = native.copy_region(item.region)
+    before = native.copy_region(item.region)
+    if item.bridged is item.region:
+        item.bridged = before
+    item.region = before
     embedded = run("reembed", native.embed, item.seamless, item.tmesh, item.quantization)
-    item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.seamless, embedded)
+    item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.bridged, item.seamless,
+                                   embedded)
     item.mapped_region = result.model.regions[index]
     item.embedding = {"route": "reembedded", **counters}
 
@@ -380,7 +418,10 @@ def _try_region(item, index, result, progress):
             finally:
                 item.seconds[stage] = time.monotonic() - started
 
-    seed = run("seamless", native.seed, item.region, str(options.field), item.guidance, options.field_weight,
+    item.bridged = item.region
+    if options.fill_holes > 0:
+        item.bridged, item.holes = run("bridge", native.bridge_holes, result.model, index, options.fill_holes)
+    seed = run("seamless", native.seed, item.bridged, str(options.field), item.guidance, options.field_weight,
                item.edge_length)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
@@ -392,6 +433,8 @@ def _try_region(item, index, result, progress):
         _grid_map(item, index, result, run)
     if options.wants("extract"):
         item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
+        if options.merge_slivers > 0:
+            native.merge_slivers(item.quads, options.merge_slivers)
     if options.wants("fit"):
         item.fitted = run("fit", _fit, item, result)
 

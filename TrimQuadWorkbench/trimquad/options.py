@@ -26,6 +26,8 @@ class Options:
 
     align, free      names of edges: 'Edge3' of CAD; 'loop:2', 'loop:2/1', 'feature:0', 'angle:30-90' of meshes
     feature_points   names of CAD vertices, or points: 'Vertex5', '1.5,2,0', (1.5, 2, 0), or '1.5', '2', '0' in a row
+    fill_holes       boundary loops shorter than this are bridged for the map and cut out again; 0: none
+    merge_slivers    trimmed cells under this fraction of a whole cell's area merge with a neighbour; 0: none
     field            'curvature', 'smooth', or the path of a file of directions
     field_weight     how closely the field follows it, 0 to 1; None: 0.1 for 'curvature', 1 for a file
     """
@@ -41,6 +43,7 @@ class Options:
     field: str = "curvature"
     field_weight: Optional[float] = None
     fill_holes: float = 0.0
+    merge_slivers: float = 0.0
     optimal: bool = False
     tolerance: Optional[float] = None
     relative_tolerance: Optional[float] = None
@@ -69,6 +72,8 @@ class Options:
             raise _refused("feature_angle", f"must be between 0 and 180 degrees, not {self.feature_angle}")
         if not (_is_number(self.fill_holes) and self.fill_holes >= 0):
             raise _refused("fill_holes", f"must be a length of 0 or more, not {self.fill_holes}")
+        if not (_is_number(self.merge_slivers) and 0 <= self.merge_slivers < 1):
+            raise _refused("merge_slivers", f"is a fraction of a whole cell, from 0 to less than 1, not {self.merge_slivers}")
         for name, known in (
             ("boundary", ("free", "aligned")),
             ("features", (None, "trim", "align", "ignore")),
@@ -100,7 +105,6 @@ class Options:
     def _refuse_missing_stages(self):
         for given, what in (
             (self.field == "stress", "--field stress"),
-            (self.fill_holes > 0, "--fill-holes"),
         ):
             if given:
                 raise input_error("options", f"{what} is not in this version yet; leave it out")

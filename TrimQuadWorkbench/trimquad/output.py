@@ -93,7 +93,7 @@ def _write_result(result, folder, progress):
     started = time.monotonic()
     native, kinds = load(), result.options.write
     with progress.stage("write"):
-        for kind, attribute in (("seamless", "seamless"), ("gridmap", "grid"), ("quads", "quads")):
+        for kind, attribute in (("seamless", "seamless_map"), ("gridmap", "grid"), ("quads", "quads")):
             if kind in kinds:
                 for index, item in enumerate(result.regions):
                     value = getattr(item, attribute)

@@ -55,7 +55,8 @@ def _region_report(result, index, item, seconds):
         },
         "features": {**item.region.features, "followed_edges": item.field and item.field.aligned_edges,
                      "creases": item.fitted_from is item},
-        "singularities": item.field and _singularities(item.field),
+        "holes": item.holes and {**item.holes, "singularities": item.bridged_singularities},
+        "singularities": item.field and _singularities(item),
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
         "tmesh": item.quantization and tmesh_counts(item.tmesh, item.quantization),
         "quantization": item.quantization and _quantization_report(item.quantization),
@@ -77,12 +78,12 @@ def _quantization_report(quantization):
     }
 
 
-def _singularities(field):
-    counts = field.singularities
+def _singularities(item):
+    indices = [s.index for s in item.singularities]
     return {
-        "count": sum(counts.values()),
-        "indices": {str(k): counts[k] for k in sorted(counts)},
-        "loop_turns": field.loop_turns,
+        "count": len(indices),
+        "indices": {str(k): indices.count(k) for k in sorted(set(indices))},
+        "loop_turns": item.field.loop_turns,
     }
 
 

@@ -2,11 +2,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <map>
+
 #include "bindings.h"
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/check_mesh.h"
 #include "trimquad/mesh/edge_choice.h"
 #include "trimquad/mesh/feature_graph.h"
+#include "trimquad/mesh/hole_bridges.h"
 #include "trimquad/mesh/mesh_model.h"
 #include "trimquad/mesh/parametrization.h"
 #include "trimquad/mesh/read_mesh.h"
@@ -159,8 +162,26 @@ void bindRegion(py::module_& m) {
       },
       py::arg("model"), py::arg("index"), py::arg("region"),
       "Puts a region into the model, without the aligned edges inside it.");
+  m.def(
+      "bridge_holes",
+      [](Model& model, int index, double length, const Progress& progress) {
+        Region& region = model.regions.at(std::size_t(index));
+        Region bridged = region;
+        const HoleCounts counts = bridgeHoles(bridged, length, progress);
+        if (counts.bridged > 0) region = withoutBridges(bridged);
+        return std::make_tuple(std::move(bridged), std::map<std::string, int>{{"bridged", counts.bridged},
+                                                                              {"aligned", counts.aligned},
+                                                                              {"ends", counts.ends}});
+      },
+      py::arg("model"), py::arg("index"), py::arg("length"), py::arg("progress"), Released(),
+      "A region of the model with its holes shorter than `length` bridged, and how many boundary loops were "
+      "bridged, not bridged because they are aligned, or because they are no holes. Vertices and triangles "
+      "of the model's region keep their numbers.");
   py::class_<Region>(m, "Region")
       .def_readonly("name", &Region::name)
+      .def_property_readonly(
+          "bridge", [](const Region& region) { return region.bridge; },
+          "by triangle whether it bridges a hole; empty where none does")
       .def_property_readonly("triangles", [](const Region& region) { return region.mesh.n_faces(); })
       .def_property_readonly("vertices", [](const Region& region) { return region.mesh.n_vertices(); })
       .def_property_readonly("boundary_loops",

@@ -3,6 +3,7 @@
 #include "bindings.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/quads/extract_quads.h"
+#include "trimquad/quads/merge_slivers.h"
 
 namespace py = pybind11;
 
@@ -26,6 +27,8 @@ py::dict statisticsOf(const QuadMesh& quads) {
   edge["std"] = s.edgeLength.std;
   all["quads"] = s.quads;
   all["trimmed"] = s.trimmed;
+  all["merged_slivers"] = quads.mergedSlivers;
+  all["dropped_slivers"] = quads.droppedSlivers;
   all["irregular_vertices"] = s.irregularVertices;
   all["angle_deviation"] = angle;
   all["edge_length"] = edge;
@@ -59,10 +62,15 @@ void bindQuads(py::module_& m) {
   m.def(
       "extract_quads",
       [](const GridMap& grid, const Region& region, const Progress& progress) {
-        return extractQuads(grid, cornersOf(region), progress);
+        QuadMesh quads = extractQuads(grid, cornersOf(region), progress);
+        dropVanishingCells(quads);
+        return quads;
       },
       py::arg("grid"), py::arg("region"), py::arg("progress"), Released(),
-      "The quads of a grid map; the region says which boundary vertices are corners.");
+      "The quads of a grid map; the region says which boundary vertices are corners. Cells under a millionth "
+      "of a whole one go into neighbours.");
+  m.def("merge_slivers", &mergeSlivers, py::arg("quads"), py::arg("fraction"), Released(),
+        "Merges trimmed cells under this fraction of a whole cell with neighbours; returns how many.");
 }
 
 }  // namespace trimquad

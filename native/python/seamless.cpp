@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.h"
+#include "trimquad/mesh/hole_bridges.h"
 #include "trimquad/mesh/write_obj.h"
 
 namespace py = pybind11;
@@ -25,6 +26,15 @@ py::dict countersOf(const MapCounters& counters) {
 }
 
 void bindSeamless(py::module_& m) {
+  py::class_<Parametrization>(m, "Map")
+      .def_property_readonly("arrays", [](const Parametrization& map) { return arraysOf(map); })
+      .def(
+          "to_obj", [](const Parametrization& map) { return writeObj(map); }, Released());
+  m.def(
+      "without_bridges",
+      [](const SeamlessMap& map, const Region& bridged) { return withoutBridges(map, bridged); },
+      py::arg("map"), py::arg("bridged"), Released(),
+      "The map of the region alone, without what bridges its holes.");
   py::class_<SeamlessMap>(m, "SeamlessMap")
       .def_property_readonly("counters", [](const SeamlessMap& map) { return countersOf(map.counters); })
       .def_property_readonly("arrays", [](const SeamlessMap& map) { return arraysOf(map); })

@@ -85,7 +85,6 @@ void bindTMesh(py::module_& m) {
       "arc_curves", [](const TMesh& tmesh, const SeamlessMap& map) { return curvesOf(tmesh, map); },
       py::arg("tmesh"), py::arg("seamless"),
       "Corners of each arc's course in space, n x 3; of a virtual arc the places of its nodes.");
-  py::class_<Parametrization>(m, "Map");
   m.def("read_map", &readMapObj, py::arg("name"), py::arg("text"), Released(),
         "The map in the text of an OBJ file.");
   m.def(

@@ -150,7 +150,7 @@ def test_a_result_gives_its_field_and_its_map(converted, name):
         assert sum(s.index for s in item.singularities) == sum(k * n for k, n in item.field.singularities.items())
 
 
-REGION_KEYS = {"name", "status", "error", "mesh", "features", "singularities", "seamless", "tmesh", "quantization", "embedding",
+REGION_KEYS = {"name", "status", "error", "mesh", "features", "holes", "singularities", "seamless", "tmesh", "quantization", "embedding",
                "gridmap", "quads", "histograms", "nurbs", "seconds"}
 
 
@@ -166,7 +166,8 @@ def test_the_report_has_its_keys(converted, name):
         assert {"triangles", "vertices", "boundary_loops", "euler"} == set(region["mesh"])
         assert {"flipped_before", "flipped", "iterations"} <= set(region["seamless"])
         assert {"flipped", "distortion_start", "distortion_end", "iterations"} <= set(region["gridmap"])
-        assert {"quads", "trimmed", "irregular_vertices", "angle_deviation", "edge_length"} == set(region["quads"])
+        assert {"quads", "trimmed", "merged_slivers", "dropped_slivers", "irregular_vertices", "angle_deviation",
+                "edge_length"} == set(region["quads"])
         assert sum(region["histograms"]["edge_length"]["counts"]) > 0
         assert {"faces", "control_points", "degree", "max_deviation", "rms_deviation", "max_gap", "tolerance"} == set(
             region["nurbs"]

@@ -55,7 +55,6 @@ def test_an_unusable_option_is_one_line_that_names_it(given, said):
     "given",
     [
         {"field": "stress"},
-        {"fill_holes": 1.0},
     ],
 )
 def test_what_this_version_cannot_do_is_refused_rather_than_ignored(given):

@@ -13,7 +13,8 @@ def make(document, source, faces=(), **properties):
 
     faces        names such as 'Face3'; all where empty
     properties   of the SplineShell: EdgeLength, Quads, Tolerance, RelativeTolerance, Degree, FeatureAngle, Features,
-                 Boundary, Align, Free, FeaturePoints, Field
+                 Boundary, Align, Free, FeaturePoints, Field, FieldWeight, FillHoles, MergeSlivers,
+                 Optimal
 
     Returns the SplineShell, computed; its quads and map depend on it. In a GUI the source is hidden behind the result,
     and the map is hidden until it is asked for.

@@ -54,6 +54,10 @@ Region refinedRegion(const Region& region, const std::vector<ModelCurve>& curves
     result.inputTriangle.clear();
     for (const int origin : refined.faceOrigin) result.inputTriangle.push_back(region.inputTriangle[origin]);
   }
+  if (!region.bridge.empty()) {
+    result.bridge.clear();
+    for (const int origin : refined.faceOrigin) result.bridge.push_back(region.bridge[origin]);
+  }
   result.aligned = refinedEdges(region.mesh, refined, region.aligned);
   return result;
 }

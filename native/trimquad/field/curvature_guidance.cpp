@@ -2,11 +2,14 @@
 
 #include <cmath>
 
+#include "trimquad/field/bridged_guidance.h"
+#include "trimquad/mesh/hole_bridges.h"
 #include "trimquad/mesh/triangle_surface.h"
 
 namespace trimquad {
 
 FieldGuidance curvatureGuidance(const Region& region, const Progress& progress) {
+  if (!region.bridge.empty()) return overBridges(curvatureGuidance(withoutBridges(region), progress), region);
   const auto& mesh = region.mesh;
   FieldGuidance guidance;
   guidance.direction.resize(mesh.n_faces());

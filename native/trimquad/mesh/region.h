@@ -38,6 +38,10 @@ struct Region {
   /// Per triangle: the triangle of the input mesh that it lies in, as it was read; empty for CAD models.
   std::vector<int> inputTriangle;
 
+  /// Per triangle: whether it bridges a hole and is no part of the surface; empty where none does. Edges
+  /// around a bridged hole keep their curve, though they are not on the boundary. (bridgeHoles)
+  std::vector<bool> bridge;
+
   /// Edges that must lie on grid lines: aligned boundary edges and aligned feature edges. Ascending.
   std::vector<EdgeHandle> aligned;
   /// Vertices that must lie on grid points. Ascending.

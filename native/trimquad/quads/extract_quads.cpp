@@ -134,7 +134,7 @@ class Extraction {
     for (const auto& loop : loops_.loops(c)) {
       auto& corners = planar.emplace_back();
       for (const auto& p : loop)
-        if (p.kept) corners.push_back({loops_.pointOf(p), p.at});
+        if (p.kept) corners.push_back({loops_.pointOf(p), p.at, !overlay_.points[loops_.pointOf(p)].border});
     }
     for (const auto& polygon : simplePolygons(planar)) {
       auto& simple = quads_.cells[c].simple.emplace_back();

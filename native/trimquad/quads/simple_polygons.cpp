@@ -72,7 +72,7 @@ class Divider {
 
   /// Joins the chain with the nearest loop that is still apart, by a bridge there and back.
   Chain joinNearest(const Chain& chain, std::vector<bool>& waiting) {
-    using Score = std::tuple<int, WideQuanta>;  // crossings, length
+    using Score = std::tuple<int, int, WideQuanta>;  // crossings, inner ends, length
     std::optional<Score> best;
     size_t bestCorner = 0, bestLoop = 0, bestEnd = 0;
     for (size_t i = 0; i < chain.size(); ++i)
@@ -81,9 +81,10 @@ class Divider {
         const Chain& hole = loops_[loop];
         for (size_t k = 0; k < hole.size(); ++k) {
           const WideQuanta length = squaredDistance(chain[i], hole[k]);
-          if (best && Score{0, length} >= *best) continue;
+          const int inner = chain[i].inner + hole[k].inner;
+          if (best && Score{0, inner, length} >= *best) continue;
           const int wrong = !leadsInside(chain, i, hole[k].at) + !leadsInside(hole, k, chain[i].at);
-          const Score score{wrong + crossings(chain[i], hole[k]), length};
+          const Score score{wrong + crossings(chain[i], hole[k]), inner, length};
           if (best && score >= *best) continue;
           best = score, bestCorner = i, bestLoop = loop, bestEnd = k;
         }
@@ -98,11 +99,11 @@ class Divider {
     return joined;
   }
 
-  /// The diagonal that leaves the fewest repeated corners and divides most evenly, among those that cross
-  /// nothing.
+  /// The diagonal that leaves the fewest repeated corners, has the fewest inner ends and divides most evenly,
+  /// among those that cross nothing.
   std::pair<size_t, size_t> bestDiagonal(const Chain& chain) {
-    using Candidate =
-        std::tuple<int, size_t, WideQuanta, size_t, size_t>;  // repeats left, larger part, length, ends
+    using Candidate = std::tuple<int, int, size_t, WideQuanta, size_t,
+                                 size_t>;  // repeats left, inner ends, larger part, length, ends
     const size_t n = chain.size();
     const auto twins = repeatedPositions(chain);
     std::vector<Candidate> candidates;
@@ -114,13 +115,15 @@ class Divider {
           const bool inPart = i <= p && q <= j, inRest = (p <= i || p >= j) && (q <= i || q >= j);
           left += inPart || inRest;
         }
-        candidates.push_back({left, std::max(j - i, n - (j - i)), squaredDistance(chain[i], chain[j]), i, j});
+        const int inner = chain[i].inner + chain[j].inner;
+        candidates.push_back(
+            {left, inner, std::max(j - i, n - (j - i)), squaredDistance(chain[i], chain[j]), i, j});
       }
     std::sort(candidates.begin(), candidates.end());
     TRIMQUAD_ASSERT(!candidates.empty());
     std::pair<size_t, size_t> ends;
     std::optional<int> fewest;
-    for (const auto& [left, larger, length, i, j] : candidates) {
+    for (const auto& [left, inner, larger, length, i, j] : candidates) {
       const int wrong = !leadsInside(chain, i, chain[j].at) + !leadsInside(chain, j, chain[i].at) +
                         crossings(chain[i], chain[j]);
       if (!fewest || wrong < *fewest) fewest = wrong, ends = {i, j};

@@ -7,8 +7,9 @@
 namespace trimquad {
 
 struct PlanarCorner {
-  int point;       ///< corners are the same when their points are
-  FixedVector at;  ///< position in the plane
+  int point;           ///< corners are the same when their points are
+  FixedVector at;      ///< position in the plane
+  bool inner = false;  ///< other polygons meet all around it: diagonals rather end elsewhere
 };
 
 /// Cuts a polygon with holes into simple polygons by diagonals between its corners.

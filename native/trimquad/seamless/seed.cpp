@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "trimquad/base/error.h"
+#include "trimquad/field/bridged_guidance.h"
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/singularity_free_field.h"
 
@@ -26,7 +27,7 @@ FieldGuidance guidanceFor(const Region& region, const SeedOptions& options, cons
   switch (options.follow) {
     case SeedOptions::Follow::Given:
       TRIMQUAD_ASSERT(options.guidance.has_value());
-      return *options.guidance;
+      return overBridges(*options.guidance, region);
     case SeedOptions::Follow::Curvature:
       return curvatureGuidance(region, progress);
     case SeedOptions::Follow::Smooth:

@@ -16,7 +16,8 @@ struct SeedOptions {
     Given       ///< `guidance`
   };
   Follow follow = Follow::Curvature;
-  std::optional<FieldGuidance> guidance;  ///< for Follow::Given
+  /// For Follow::Given; by triangle of the region without the bridges of its holes.
+  std::optional<FieldGuidance> guidance;
   /// How closely, from 0, not at all, to 1, down to features of a fortieth of the region's size. Without one:
   /// 0.1 for the curvature, 1 for what is given.
   std::optional<double> weight;

@@ -114,6 +114,21 @@ TEST(ExtractQuads, aHoleInsideACellIsALoopOfThatCell) {
   EXPECT_EQ(withHole, 1);
 }
 
+TEST(ExtractQuads, diagonalsToAHoleEndOnTheBoundaryWhereTheyCan) {
+  // Beside a hole, the cell has two corners inside the surface and the others on the boundary.
+  const auto soup = sheet(
+      40, 20, [](int i, int j) { return Eigen::Vector2d(0.1 * i - 0.05, 0.1 * j + 0.25); },
+      [](int i, int j) { return i == 15 && j == 2; });
+  const QuadMesh quads = extractSound(planarMap(soup));
+  std::vector<int> valence(quads.points.size(), 0);
+  for (const auto& polygon : polygonsOf(quads))
+    for (const auto id : polygon) ++valence[id.index];
+  for (size_t p = 0; p < valence.size(); ++p)
+    if (!quads.points[p].border) {
+      EXPECT_EQ(valence[p], quads.points[p].quads);
+    }
+}
+
 TEST(ExtractQuads, severalHolesInsideACellAreCutIntoSimplePolygons) {
   const auto soup = sheet(
       40, 40, [](int i, int j) { return Eigen::Vector2d(-0.5 + 0.05 * i, -0.5 + 0.05 * j); },
