@@ -142,14 +142,18 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
         if (s >= length + kBeyondBoundary - kSame) high = std::min(high, s);
   }
 
-  // How far the influence of a singularity at an end reaches.
+  // How far the influence of a singularity at an end reaches: beyond the boundary where the border ends
+  // there.
   const auto reach = [&](bool atStart) {
+    const auto& other = atStart ? endPoint : startPoint;
+    const double end = other.inner() ? length : atStart ? high : length - low;
+    const double wanted = std::min(kTangentReach, other.isSingular() ? length / 2 : end);
     double farthest = 0;
     for (int k : {0, 1}) {
-      double first = length;
+      double first = end;
       for (const double s : breaks[k]) {
         const double away = atStart ? s : length - s;
-        if (away > std::min(kTangentReach, length / 2) - kSame) first = std::min(first, away);
+        if (away > wanted - kSame) first = std::min(first, away);
       }
       farthest = std::max(farthest, first);
     }
