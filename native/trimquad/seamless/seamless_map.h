@@ -59,4 +59,11 @@ enum class Effort {
 SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, Effort effort,
                         StepBudget& budget, const Progress& progress);
 
+/// The same with a budget of its own.
+inline SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength,
+                               Effort effort, const Progress& progress) {
+  StepBudget budget;
+  return seamlessMap(region, field, edgeLength, effort, budget, progress);
+}
+
 }  // namespace trimquad
