@@ -160,7 +160,7 @@ bool isInjective(const MapProblem& problem, const MapEnergy& energy, const Eigen
 
 std::vector<MapStart> startsOf(const std::vector<const MapTarget*>& targets) {
   std::vector<MapStart> starts;
-  for (const double evenness : {0.5, 1.0, 0.0})
+  for (const double evenness : {0.5, 1.0})
     for (const auto* target : targets) starts.push_back({target, evenness});
   return starts;
 }
