@@ -240,7 +240,7 @@ std::optional<std::pair<Region, SeamlessMap>> randomMap(unsigned number, std::mt
 TEST(ExactMap, aMapThatIsValidInDoublesStaysValid) {
   int maps = 0, aligned = 0, singular = 0, alignedAndSingular = 0;
   constexpr int kPerSurface = 20;
-  for (unsigned number = 0; number < sample::rounds(300); ++number) {
+  for (unsigned number = 0; number < sample::rounds(150); ++number) {
     SCOPED_TRACE(number);
     std::mt19937 random(number);
     const auto sample = randomMap(number, random);
@@ -283,7 +283,7 @@ TEST(ExactMap, aMapThatIsValidInDoublesStaysValid) {
     singular += hasSingular;
     alignedAndSingular += hasAligned && hasSingular;
   }
-  EXPECT_GT(maps, int(sample::rounds(300)) * kPerSurface * 3 / 4);
+  EXPECT_GT(maps, int(sample::rounds(150)) * kPerSurface * 3 / 4);
   EXPECT_GT(aligned, 0);
   EXPECT_GT(singular, 0);
   EXPECT_GT(alignedAndSingular, 0);
