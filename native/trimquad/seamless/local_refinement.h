@@ -5,8 +5,8 @@
 
 namespace trimquad {
 
-/// The triangles that a map x turns over, and those around vertices that it winds around too often or too
-/// rarely. Ascending.
+/// The triangles that a map x turns over or collapses, and those around vertices that it winds around too
+/// often or too rarely. Ascending.
 std::vector<FaceHandle> wrongTriangles(const SurfaceMesh& mesh, const std::vector<int>& index,
                                        const SeamBasis& basis, const MapEnergy& energy,
                                        const Eigen::VectorXd& x);

@@ -1,5 +1,6 @@
 #include "trimquad/seamless/solve_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -85,6 +86,32 @@ std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMe
   return std::nullopt;
 }
 
+/// The map in fixed-point numbers, at the finest scale that holds it.
+Parametrization roundedMap(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z) {
+  Parametrization map;
+  map.mesh = mesh;
+  const Eigen::VectorXd x = basis.basis().matrix() * z + basis.basis().offset();
+  map.scale = FixedScale::fitting(x.size() > 0 ? x.cwiseAbs().maxCoeff() : 1);
+  const auto exact = basis.basis().evaluateExact(z, map.scale.bits);
+  map.corner.resize(mesh.n_halfedges());
+  for (const auto h : mesh.halfedges())
+    if (!mesh.is_boundary(h))
+      map.corner[h.idx()] = {exact[basis.coordinate(basis.wedge(h), 0)],
+                             exact[basis.coordinate(basis.wedge(h), 1)]};
+  return map;
+}
+
+/// Whether the map still turns no triangle over once it is rounded: one that collapses is often positive in
+/// doubles by chance.
+bool staysPositive(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z) {
+  const Parametrization map = roundedMap(mesh, basis, z);
+  for (const auto f : mesh.faces()) {
+    const auto h = mesh.halfedge_handle(f), n = mesh.next_halfedge_handle(h);
+    if (orientation(map.from(h), map.from(n), map.to(n)) <= 0) return false;
+  }
+  return true;
+}
+
 [[noreturn]] void throwStillFlipped(const MapProblem& problem, const MapEnergy& energy,
                                     const Eigen::VectorXd& x) {
   const auto& mesh = problem.mesh;
@@ -95,7 +122,14 @@ std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMe
                            " triangles stay turned over in the map; a finer or smoother mesh may help",
                        "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
   const auto wrong = wrongCones(mesh, problem.index, problem.basis, x);
-  TRIMQUAD_ASSERT(!wrong.empty());
+  if (wrong.empty()) {
+    const auto thinner = [&](FaceHandle f, FaceHandle g) {
+      return energy.jacobian(f.idx(), x).det() < energy.jacobian(g.idx(), x).det();
+    };
+    const FaceHandle f = *std::min_element(mesh.faces_begin(), mesh.faces_end(), thinner);
+    throw stageError(problem.stage, "a triangle collapses in the map; a finer or smoother mesh may help",
+                     "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
+  }
   throw stageError(problem.stage, "the map winds around a vertex twice; a finer or smoother mesh may help",
                    "vertex " + std::to_string(wrong.front().idx()), mesh.point(wrong.front()));
 }
@@ -155,7 +189,8 @@ Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, con
 
 bool isInjective(const MapProblem& problem, const MapEnergy& energy, const Eigen::VectorXd& z) {
   const Eigen::VectorXd x = energy.coordinates(z);
-  return energy.flipped(x) == 0 && wrongCones(problem.mesh, problem.index, problem.basis, x).empty();
+  return energy.flipped(x) == 0 && wrongCones(problem.mesh, problem.index, problem.basis, x).empty() &&
+         staysPositive(problem.mesh, problem.basis, z);
 }
 
 std::vector<MapStart> startsOf(const std::vector<const MapTarget*>& targets) {
@@ -248,16 +283,7 @@ Eigen::VectorXd solveMap(const MapProblem& problem, const std::optional<Eigen::V
 
 Parametrization exactMap(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z,
                          bool integer) {
-  Parametrization map;
-  map.mesh = mesh;
-  const Eigen::VectorXd x = basis.basis().matrix() * z + basis.basis().offset();
-  map.scale = FixedScale::fitting(x.size() > 0 ? x.cwiseAbs().maxCoeff() : 1);
-  const auto exact = basis.basis().evaluateExact(z, map.scale.bits);
-  map.corner.resize(mesh.n_halfedges());
-  for (const auto h : mesh.halfedges())
-    if (!mesh.is_boundary(h))
-      map.corner[h.idx()] = {exact[basis.coordinate(basis.wedge(h), 0)],
-                             exact[basis.coordinate(basis.wedge(h), 1)]};
+  Parametrization map = roundedMap(mesh, basis, z);
   verify(map, integer);
   return map;
 }

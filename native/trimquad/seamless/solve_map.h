@@ -43,7 +43,8 @@ struct MapProblem {
   std::string stage;  ///< named in errors
 };
 
-/// Whether a map, z, has no flipped triangle and winds around every vertex as its index says.
+/// Whether a map, z, has no flipped triangle, not even when it is rounded, and winds around every vertex as
+/// its index says.
 bool isInjective(const MapProblem& problem, const MapEnergy& energy, const Eigen::VectorXd& z);
 
 /// Maps, z, that untangling came to from the starts, one after the other up to the first that is locally
