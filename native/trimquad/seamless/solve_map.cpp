@@ -145,6 +145,7 @@ void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& 
   // less area turned over. Energies go on falling for hundreds of steps where it does not. The first round
   // spreads deep folds over many triangles: what it leaves is what the others have to be better than.
   constexpr int kRounds = 40, kStepsPerRound = 8, kPatience = 4;
+  constexpr double kDense = 0.25;  // a multiplication in dense blocks takes so much of the others' time
   int fewest = std::numeric_limits<int>::max();
   double shallowest = least, smallest = std::numeric_limits<double>::infinity();
   for (int round = 0, idle = 0; round < kRounds && idle < kPatience; ++round) {
@@ -156,7 +157,7 @@ void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& 
       if (budget.spent()) return;
       const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
       ++iterations;
-      budget.spend(energy.stepWork() + solver.work());
+      budget.spend(energy.stepWork() + kDense * solver.work());
       least = energy.smallestDeterminant(energy.coordinates(z));
       if (least > 0) return;
       if (least > roundStart / 2 || decrease < 1e-5) break;
