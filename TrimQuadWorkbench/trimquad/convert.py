@@ -424,6 +424,10 @@ def _try_region(item, index, result, progress):
     seed = run("seamless", native.seed, item.bridged, str(options.field), item.guidance, options.field_weight,
                item.edge_length)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
+    if seed.refined:
+        # The model's region gets halved edges; the field and all maps are of these.
+        item.guidance = native.place_refined(result.model, index, seed, item.guidance)
+        item.region = item.mapped_region = result.model.regions[index]
     item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
     if options.wants("partition"):
         item.tmesh = run("partition", native.partition, item.seamless)

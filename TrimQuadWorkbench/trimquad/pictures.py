@@ -1,7 +1,7 @@
 """Pictures of a result: the map as a checker on the surface with its singular vertices, the quads, the B-spline faces."""
 import numpy
 
-from .colours import point_colour
+from .colours import CHECKS, point_colour
 from .error import input_error
 from .freecad_shape import shape_from_bytes
 from .histograms import histograms, sum_of, write_histograms
@@ -10,7 +10,6 @@ from .polygons import Polygons
 from .tmesh_layout import arc_courses, arc_lines, critical_points, layout_of_patches
 
 SIZE = (9.0, 6.75)  # inches, at 100 dots an inch
-CHECKS = (numpy.array([0.93, 0.93, 0.90]), numpy.array([0.33, 0.52, 0.74]))
 QUAD_COLOUR = numpy.array([0.90, 0.91, 0.93])
 TRIMMED_COLOUR = numpy.array([0.98, 0.84, 0.60])
 FACE_COLOURS = numpy.array([[0.55, 0.68, 0.85], [0.93, 0.76, 0.52], [0.62, 0.80, 0.62], [0.85, 0.62, 0.66],

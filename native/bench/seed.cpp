@@ -49,7 +49,9 @@ struct Prepared {
   std::unique_ptr<MapEnergy> energy;
 
   explicit Prepared(int n) : region(bumpyTorus(n)), field(fieldOf(region)) {
-    map = seamlessMap(region, field, std::sqrt(surfaceArea(region.mesh) / 1000), Effort::Full, Progress());
+    StepBudget budget;
+    map = seamlessMap(region, field, std::sqrt(surfaceArea(region.mesh) / 1000), Effort::Full, budget,
+                      Progress());
     SeamConstraints constraints;
     constraints.aligned = map.alignedSides;
     basis = std::make_unique<SeamBasis>(region.mesh, map.seams, constraints);
@@ -85,8 +87,10 @@ void closedSeamless(benchmark::State& state) {
   const Region region = bumpyTorus(int(state.range(0)));
   const CrossField field = fieldOf(region);
   const double edgeLength = std::sqrt(surfaceArea(region.mesh) / 1000);
-  for (auto _ : state)
-    benchmark::DoNotOptimize(seamlessMap(region, field, edgeLength, Effort::Full, Progress()));
+  for (auto _ : state) {
+    StepBudget budget;
+    benchmark::DoNotOptimize(seamlessMap(region, field, edgeLength, Effort::Full, budget, Progress()));
+  }
   count(state, region);
 }
 
@@ -123,7 +127,8 @@ void untangling(benchmark::State& state) {
   for (auto _ : state) {
     Eigen::VectorXd z = start;
     steps = 0;
-    untangle(*p.energy, *p.basis, z, steps, Progress());
+    StepBudget budget;
+    untangle(*p.energy, *p.basis, z, steps, budget, Progress());
     if (p.energy->flipped(p.energy->coordinates(z)) > 0) {
       state.SkipWithError("triangles stay turned over");
       break;

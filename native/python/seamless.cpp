@@ -5,6 +5,7 @@
 #include "bindings.h"
 #include "trimquad/mesh/hole_bridges.h"
 #include "trimquad/mesh/write_obj.h"
+#include "trimquad/seamless/local_refinement.h"
 
 namespace py = pybind11;
 
@@ -15,8 +16,10 @@ py::dict countersOf(const MapCounters& counters) {
   all["flipped_before"] = counters.flippedBefore;
   all["path_steps"] = counters.pathSteps;
   all["untangle_iterations"] = counters.untangleIterations;
+  all["refinements"] = counters.refinements;
+  all["halved_edges"] = counters.halvedEdges;
   all["stiffenings"] = counters.stiffenings;
-  all["start"] = counters.start;
+  all["starts"] = counters.starts;
   all["convex_start"] = counters.convexStart;
   all["scaffolded"] = counters.scaffolded;
   all["iterations"] = counters.iterations;
@@ -43,6 +46,7 @@ void bindSeamless(py::module_& m) {
   py::class_<Seed>(m, "Seed")
       .def_readonly("field", &Seed::field)
       .def_readonly("map", &Seed::map)
+      .def_property_readonly("refined", [](const Seed& s) { return s.map.refined.has_value(); })
       .def_readonly("field_edits", &Seed::fieldEdits)
       .def_readonly("field_seconds", &Seed::fieldSeconds)
       .def_readonly("seamless_seconds", &Seed::seamlessSeconds);
@@ -62,6 +66,17 @@ void bindSeamless(py::module_& m) {
       py::arg("region"), py::arg("follow"), py::arg("guidance"), py::arg("weight"), py::arg("edge_length"),
       py::arg("progress"), Released(),
       "follow: 'curvature' or 'smooth', where there is no `guidance`; weight: how closely, 0 to 1, or None");
+  m.def(
+      "place_refined",
+      [](Model& model, int index, const Seed& seed, std::optional<FieldGuidance> guidance) {
+        const RefinedMesh& refined = *seed.map.refined;
+        Region& region = model.regions.at(std::size_t(index));
+        region = refinedRegion(region, model.curves, refined);
+        if (guidance) guidance = refinedGuidance(refined, *guidance);
+        return guidance;
+      },
+      py::arg("model"), py::arg("index"), py::arg("seed"), py::arg("guidance"), Released(),
+      "The region of the model gets the mesh with halved edges that the map is of. Returns its guidance.");
 }
 
 }  // namespace trimquad

@@ -134,8 +134,20 @@ def the_grid_map_is_hidden_until_it_is_asked_for_and_its_parts_can_be_switched()
     view.Visibility = True
     spin(0.2)
     assert view.Proxy.grid[1].numVertices.getNum() == len(grid.GridLines) // 2 > 100
+    coordinates, images, triangles = view.Proxy.checker
+    count = triangles.numVertices.getNum()
+    assert 3 * count == coordinates.point.getNum() == images.point.getNum() == len(grid.CheckerImages) > 300
+    area = 0.0
+    for k in range(0, 3 * count, 3):
+        a, b, c = grid.CheckerImages[k : k + 3]
+        area += (b - a).cross(c - a).z / 2
+    assert 40 < area < 120, "the checker's squares are quads"
     for name, switch in view.Proxy.switches.items():
-        assert switch.whichChild.getValue() == -3  # all
+        shown = name != "ShowGridLines"
+        assert getattr(view, name) == shown
+        assert switch.whichChild.getValue() == (-3 if shown else -1)  # all, none
+        setattr(view, name, True)
+        assert switch.whichChild.getValue() == -3
         setattr(view, name, False)
         assert switch.whichChild.getValue() == -1  # none
         setattr(view, name, True)

@@ -1,5 +1,6 @@
 """GridMap: the grid of the map that a SplineShell's quads were made from, and its singular vertices."""
 import FreeCAD
+import numpy
 
 from ..error import Error
 from ..grid_lines import grid_lines
@@ -7,13 +8,15 @@ from .spline_shell import result_of
 
 PROPERTIES = (
     ("App::PropertyLink", "Shell", "Source", "The B-spline faces whose source and options this map shares", None),
+    ("App::PropertyVectorList", "CheckerCorners", "Map", "Corners of the triangles, three by three", []),
+    ("App::PropertyVectorList", "CheckerImages", "Map", "Their places in the plane of the map, in quads", []),
     ("App::PropertyVectorList", "GridLines", "Map", "Ends of the pieces of grid lines, two by two", []),
     ("App::PropertyVectorList", "AlignedEdges", "Map", "Ends of the aligned edges, two by two", []),
     ("App::PropertyVectorList", "SingularPoints", "Map", "Where other than four quads meet", []),
     ("App::PropertyIntegerList", "SingularIndices", "Map", "Their indices in quarter turns: 4 less the quads there", []),
     ("App::PropertyInteger", "Singularities", "Result", "How many singular vertices the map has", 0),
 )
-HIDDEN = ("GridLines", "AlignedEdges", "SingularPoints", "SingularIndices")
+HIDDEN = ("CheckerCorners", "CheckerImages", "GridLines", "AlignedEdges", "SingularPoints", "SingularIndices")
 
 
 class GridMap:
@@ -60,12 +63,16 @@ class GridMap:
 
 def fill(obj, regions):
     """Set the properties of a GridMap from RegionResults."""
-    lines, aligned, singular = [], [], []
+    corners, images, lines, aligned, singular = [], [], [], [], []
     for item in regions:
         if item.map is not None:
+            corners += _vectors(item.map.points[item.map.triangles])
+            images += _vectors(numpy.pad(item.map.uv.reshape(-1, 2), ((0, 0), (0, 1))))
             lines += _vectors(grid_lines(item.map.points, item.map.triangles, item.map.uv))
         aligned += _vectors(item.region.points[item.region.aligned])
         singular += item.singularities
+    obj.CheckerCorners = corners
+    obj.CheckerImages = images
     obj.GridLines = lines
     obj.AlignedEdges = aligned
     obj.SingularPoints = [FreeCAD.Vector(*s.position) for s in singular]

@@ -2,7 +2,7 @@
 import FreeCADGui
 from pivy import coin
 
-from ..colours import point_colour
+from ..colours import checker_pixels, point_colour
 from ..features.quad_mesh import polygons_of
 from . import icon_path
 
@@ -15,6 +15,8 @@ PUSHED_BACK = 2.0
 GRID_COLOUR = (0.20, 0.42, 0.68)
 ALIGNED_COLOUR = (0.04, 0.49, 0.24)
 ALIGNED_WIDTH = 3.0
+CHECKER_PIXELS = 64  # a side of the texture, which is two by two quads
+IN_FRONT = 5e-3  # of the depth of the scene; faces and triangles are less apart
 
 
 class _View:
@@ -116,12 +118,18 @@ class QuadMeshView(_View):
 
 
 class GridMapView(_View):
-    """Draws the grid lines, the aligned edges and the singular points, each of which can be switched off."""
+    """Draws the map as a checker, its grid lines, the aligned edges and the singular points, each of which can be
+    switched off."""
 
     PARTS = (
-        ("ShowGridLines", "Draw the lines on which a coordinate of the map is a whole number"),
-        ("ShowAlignedEdges", "Draw the edges that grid lines follow"),
-        ("ShowSingularPoints", "Draw the vertices where other than four quads meet: red where fewer do, blue where more"),
+        ("ShowChecker", "Draw the surface as a checker: the squares are quads of the map", True),
+        ("ShowGridLines", "Draw the lines on which a coordinate of the map is a whole number", False),
+        ("ShowAlignedEdges", "Draw the edges that grid lines follow", True),
+        (
+            "ShowSingularPoints",
+            "Draw the vertices where other than four quads meet: red where fewer do, blue where more",
+            True,
+        ),
     )
 
     def __init__(self, vobj):
@@ -129,10 +137,10 @@ class GridMapView(_View):
         super().__init__(vobj)
 
     def _ensure_properties(self, vobj):
-        for name, about in self.PARTS:
+        for name, about, shown in self.PARTS:
             if not hasattr(vobj, name):
                 vobj.addProperty("App::PropertyBool", name, "Map", about)
-                setattr(vobj, name, True)
+                setattr(vobj, name, shown)
         if not hasattr(vobj, "PointSize"):
             vobj.addProperty("App::PropertyFloat", "PointSize", "Map", "Size of the singular points in pixels")
             vobj.PointSize = 9.0
@@ -141,18 +149,22 @@ class GridMapView(_View):
         self.Object = vobj.Object
         self._ensure_properties(vobj)
         self.root = coin.SoSeparator()
-        light = coin.SoLightModel()
-        light.model.setValue(coin.SoLightModel.BASE_COLOR)
+        # The faces that the map is of would hide it in turns, and the checker its lines and points.
+        self.root.addChild(_drawn_nearer(IN_FRONT))
         pick = coin.SoPickStyle()
         pick.style.setValue(coin.SoPickStyle.UNPICKABLE)
-        self.root.addChild(light)
         self.root.addChild(pick)
         self.switches = {}
+        self.checker = self._checker()
+        self.root.addChild(_drawn_nearer(2 * IN_FRONT))
+        light = coin.SoLightModel()
+        light.model.setValue(coin.SoLightModel.BASE_COLOR)
+        self.root.addChild(light)
         self.grid = self._lines("ShowGridLines", GRID_COLOUR, LINE_WIDTH)
         self.aligned = self._lines("ShowAlignedEdges", ALIGNED_COLOUR, ALIGNED_WIDTH)
         self.points = self._points()
         vobj.addDisplayMode(self.root, "Map")
-        for name in ("GridLines", "AlignedEdges", "SingularPoints"):
+        for name in ("CheckerCorners", "GridLines", "AlignedEdges", "SingularPoints"):
             self.updateData(vobj.Object, name)
         for name in (*self.switches, "PointSize"):
             self.onChanged(vobj, name)
@@ -173,6 +185,19 @@ class GridMapView(_View):
         self.root.addChild(switch)
         self.switches[name] = switch
         return separator
+
+    def _checker(self):
+        separator = self._switched("ShowChecker")
+        hints, material = coin.SoShapeHints(), coin.SoMaterial()
+        hints.vertexOrdering.setValue(coin.SoShapeHints.COUNTERCLOCKWISE)  # with an unknown shape type: both sides lit
+        material.diffuseColor.setValue(1, 1, 1)
+        texture = coin.SoTexture2()
+        pixels = checker_pixels(CHECKER_PIXELS)
+        texture.image.setValue(coin.SbVec2s(CHECKER_PIXELS, CHECKER_PIXELS), 3, pixels)
+        coordinates, images, triangles = coin.SoCoordinate3(), coin.SoTextureCoordinate2(), coin.SoFaceSet()
+        for node in (hints, material, texture, images, coordinates, triangles):
+            separator.addChild(node)
+        return coordinates, images, triangles
 
     def _lines(self, name, colour, width):
         separator = self._switched(name)
@@ -197,7 +222,18 @@ class GridMapView(_View):
     def updateData(self, obj, name):
         if not hasattr(self, "points"):
             return
-        if name in ("GridLines", "AlignedEdges"):
+        if name in ("CheckerCorners", "CheckerImages"):
+            coordinates, images, triangles = self.checker
+            corners, places = getattr(obj, "CheckerCorners", []), getattr(obj, "CheckerImages", [])
+            if len(corners) != len(places):  # one of the two is still to come
+                return
+            _set_points(coordinates, [tuple(p) for p in corners])
+            images.point.setNum(0)
+            # The picture is two quads wide.
+            images.point.setValues(0, len(places), [(p.x / 2, p.y / 2) for p in places])
+            triangles.numVertices.setNum(0)
+            triangles.numVertices.setValues(0, len(corners) // 3, [3] * (len(corners) // 3))
+        elif name in ("GridLines", "AlignedEdges"):
             coordinates, lines = self.grid if name == "GridLines" else self.aligned
             ends = [tuple(p) for p in getattr(obj, name, [])]
             _set_points(coordinates, ends)
@@ -224,6 +260,13 @@ class GridMapView(_View):
 
     def getIcon(self):
         return icon_path("TrimQuad_GridMap")
+
+
+def _drawn_nearer(part):
+    """All that follows is drawn as if it were nearer to the eye, by that part of the depth of the scene."""
+    buffer = coin.SoDepthBuffer()
+    buffer.range.setValue(0, 1 - part)
+    return buffer
 
 
 def _set_points(coordinates, points):

@@ -23,6 +23,9 @@ class SparseSolver {
   /// One column for each right-hand side.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& rhs) const { return factor_.solve(rhs); }
 
+  /// About how many multiplications a factorisation takes; 0 before the first one.
+  double work() const { return factor_.pattern().multiplications; }
+
  private:
   bool isAnalysed(const Eigen::SparseMatrix<double>& matrix) const;
 

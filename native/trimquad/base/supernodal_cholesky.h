@@ -37,6 +37,7 @@ class SupernodalPattern {
   std::vector<Entry> entry;
   std::int64_t numbers = 0;  ///< in all blocks
   std::int64_t stack = 0;    ///< most numbers in update matrices that wait for their parents
+  double multiplications = 0;  ///< of a factorisation
 };
 
 /// Cholesky factorisation L L^T = P A P^T by the multifrontal method: a supernode's block collects the matrix

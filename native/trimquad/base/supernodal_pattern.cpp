@@ -162,6 +162,7 @@ SupernodalPattern::SupernodalPattern(const Eigen::SparseMatrix<double>& matrix) 
     node.rows = node.columns + int(row.size()) - node.firstRow;
     node.values = numbers;
     numbers += std::int64_t(node.columns) * node.rows;
+    multiplications += 0.5 * node.columns * double(node.rows) * double(node.rows);
     TRIMQUAD_ASSERT(node.rows == groups[s].rows);
   }
   rowInParent.resize(row.size());

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "trimquad/embed/refined_mesh.h"
+#include "trimquad/mesh/refined_mesh.h"
 #include "trimquad/tmesh/tmesh.h"
 
 namespace trimquad {

@@ -78,10 +78,12 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
     constraints.grid = gridPoints(seamless.mesh, seamless.seams, tmesh, quantization);
   }
   const SeamBasis basis(seamless.mesh, seamless.seams, constraints);
-  const Eigen::VectorXd z =
-      solveMap(seamless.mesh, seamless.seams, seamless.target,
-               {imageOf(seamless), seamless.target, seamless.conformalTarget}, coordinatesOf(seamless, basis),
-               seamless.index, basis, "optimize", Effort::Full, map.counters, progress);
+  const MapTarget image = imageOf(seamless);
+  const MapProblem problem{seamless.mesh,   seamless.seams,
+                           seamless.target, startsOf({&image, &seamless.target, &seamless.conformalTarget}),
+                           seamless.index,  basis,
+                           "optimize"};
+  const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis), map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   map.aligned = seamless.aligned;
   map.featurePoints = seamless.featurePoints;

@@ -23,7 +23,7 @@ MapTarget imageOf(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::
 std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const MapTarget& target,
                                                  const std::vector<int>& index, const SeamBasis& basis,
                                                  const Eigen::VectorXd& x, int& iterations,
-                                                 const Progress& progress) {
+                                                 StepBudget& budget, const Progress& progress) {
   MapEnergy energy(mesh, target, basis);
   Eigen::VectorXd z = basis.basis().restrict(x);
   // What the constants of x are beyond those of the basis; goes to 0.
@@ -32,7 +32,7 @@ std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const 
   SparseSolver solver("optimize");
   constexpr double kShortest = 1.0 / 64;
   double left = 1;
-  for (double step = 0.5; step >= kShortest;) {
+  for (double step = 0.5; step >= kShortest && !budget.spent();) {
     const MapTarget image = imageOf(mesh, basis, energy.coordinates(z));
     MapEnergy ahead(mesh, image, basis);
     const double length = std::min(step, left);
@@ -43,7 +43,7 @@ std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const 
       const Eigen::VectorXd y = ahead.coordinates(next);
       return ahead.flipped(y) == 0 && wrongCones(mesh, index, basis, y).empty();
     };
-    if (!injective()) untangle(ahead, basis, next, iterations, progress);
+    if (!injective()) untangle(ahead, basis, next, iterations, budget, progress);
     ++iterations;
     if (!injective()) {
       step = length / 2;

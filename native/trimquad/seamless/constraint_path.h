@@ -2,6 +2,7 @@
 
 #include "trimquad/base/progress.h"
 #include "trimquad/seamless/map_energy.h"
+#include "trimquad/seamless/step_budget.h"
 
 namespace trimquad {
 
@@ -13,6 +14,6 @@ namespace trimquad {
 std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const MapTarget& target,
                                                  const std::vector<int>& index, const SeamBasis& basis,
                                                  const Eigen::VectorXd& x, int& iterations,
-                                                 const Progress& progress);
+                                                 StepBudget& budget, const Progress& progress);
 
 }  // namespace trimquad

@@ -56,6 +56,13 @@ void MapEnergy::setScaffold(int first, double weight) {
   }
 }
 
+void MapEnergy::evenOut(double evenness) {
+  const double mean = totalArea_ / double(local_.size());
+  double total = 0;
+  for (auto& local : local_) total += local.area *= std::pow(mean / local.area, evenness);
+  for (auto& local : local_) local.area *= totalArea_ / total;
+}
+
 void MapEnergy::stiffen(const std::vector<double>& factor) {
   for (size_t f = 0; f < local_.size(); ++f) local_[f].area *= factor[f];
 }
@@ -131,6 +138,12 @@ double MapEnergy::stepToCollapse(const Eigen::VectorXd& x, const Eigen::VectorXd
 
 double MapEnergy::meanSymmetricDirichlet(const Eigen::VectorXd& x) const {
   return value(x, symmetricDirichlet, 0) / totalArea_;
+}
+
+double MapEnergy::stepWork() const {
+  // A triangle's share takes about so many times as long as its numbers in the Hessian; measured.
+  constexpr double kMemory = 10, kTriangle = 3000;
+  return kTriangle * double(local_.size()) + kMemory * pattern_.work();
 }
 
 void MapEnergy::addTriangle(int face, double dP, double dQ, double dPP, double dQQ, double dPQ,

@@ -22,6 +22,11 @@ MapDensity symmetricDirichlet(double I, double D);
 /// 2021)
 MapDensity foldoverFree(double I, double D, double epsilon);
 
+/// The part of a triangle's area that is turned over. No derivatives.
+inline MapDensity turnedArea(double, double D) {
+  return {D < 0 ? -D : 0, 0, 0, 0, 0};
+}
+
 /// The map energies of one mesh, target and basis.
 class MapEnergy {
  public:
@@ -30,6 +35,9 @@ class MapEnergy {
   /// Makes triangles from `first` on part of a scaffold: each has the weight `weight` instead of its area,
   /// and they do not follow their target's directions.
   void setScaffold(int first, double weight);
+
+  /// Weighs triangles by area^(1 - evenness), as much as before on the whole.
+  void evenOut(double evenness);
 
   /// Weighs triangles by `factor` (by face) beside their areas.
   void stiffen(const std::vector<double>& factor);
@@ -58,6 +66,8 @@ class MapEnergy {
   /// Largest step along `direction` before a triangle collapses; infinite where none does.
   double stepToCollapse(const Eigen::VectorXd& x, const Eigen::VectorXd& direction) const;
   double meanSymmetricDirichlet(const Eigen::VectorXd& x) const;
+  /// About how many multiplications value and derivatives take, for a StepBudget.
+  double stepWork() const;
 
   template <typename Density>
   double value(const Eigen::VectorXd& x, const Density& density, double follow) const;

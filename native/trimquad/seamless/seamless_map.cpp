@@ -6,6 +6,7 @@
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/boundary_image.h"
 #include "trimquad/seamless/conformal_scale.h"
+#include "trimquad/seamless/local_refinement.h"
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
 
@@ -105,53 +106,135 @@ int outerLoopOf(const SurfaceMesh& mesh, const CrossField& field) {
   return outer;
 }
 
+/// A map that is still to be found, of a mesh with a field and seams: all but the map itself.
+struct Draft {
+  SurfaceMesh mesh;
+  CrossField field;
+  SeamlessMap map;
+
+  Draft(const SurfaceMesh& itsMesh, CrossField itsField, SeamGraph seams, double edgeLength)
+      : mesh(itsMesh), field(std::move(itsField)) {
+    map.seams = std::move(seams);
+    map.target = mapTarget(mesh, field, map.seams.combing, edgeLength);
+    map.conformalTarget = map.target;
+    const auto scale = conformalScale(mesh, field);
+    for (size_t f = 0; f < scale.size(); ++f)
+      for (auto& corner : map.conformalTarget[f]) corner *= scale[f];
+    map.alignedSides = alignedSides(mesh, field.aligned, map.target);
+    map.index = field.index;
+    map.aligned = field.aligned;
+  }
+
+  SeamBasis basis() const {
+    SeamConstraints constraints;
+    constraints.aligned = map.alignedSides;
+    if (map.seams.tube) {
+      // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
+      // grid wind around the tube like a thread.
+      const Eigen::Vector2d around = lengthAlongEnd(mesh, field, map.target);
+      constraints.translations.resize(1);
+      constraints.translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
+    }
+    return {mesh, map.seams, constraints};
+  }
+
+  MapProblem problem(const SeamBasis& basis) const {
+    return {mesh,      map.seams, map.target, startsOf({&map.target, &map.conformalTarget}),
+            map.index, basis,     "seamless"};
+  }
+};
+
+/// The triangles that the best of the maps leaves wrong.
+std::vector<FaceHandle> fewestWrong(const Draft& draft, const SeamBasis& basis, const UntangledMaps& maps) {
+  const MapEnergy energy(draft.mesh, draft.map.target, basis);
+  std::vector<FaceHandle> fewest;
+  for (size_t k = 0; k < maps.reached.size(); ++k) {
+    auto wrong =
+        wrongTriangles(draft.mesh, draft.map.index, basis, energy, energy.coordinates(maps.reached[k]));
+    if (k == 0 || wrong.size() < fewest.size()) fewest = std::move(wrong);
+  }
+  return fewest;
+}
+
+/// Where untangling leaves triangles wrong around a few places: the draft with the edges there halved, again
+/// and again, and what untangling comes to then; nothing where that does not help. The field stays the same.
+std::optional<std::pair<Draft, Eigen::VectorXd>> locallyRefined(const Region& region, const Draft& whole,
+                                                                std::vector<FaceHandle> wrong,
+                                                                double edgeLength, MapCounters& counters,
+                                                                StepBudget& budget,
+                                                                const Progress& progress) {
+  constexpr int kRounds = 3;
+  constexpr double kFew = 0.02;  // of the triangles: more is not the mesh's fault
+  constexpr size_t kAlwaysFew = 20;
+  RefinedMesh refined = unrefined(region.mesh);
+  const int flippedBefore = counters.flippedBefore;
+  for (int round = 0; round < kRounds && !budget.spent(); ++round) {
+    if (double(wrong.size()) > std::max(double(kAlwaysFew), kFew * double(refined.mesh.n_faces())))
+      return std::nullopt;
+    for (const auto e : edgesOf(refined.mesh, within(refined.mesh, wrong, 1))) {
+      splitInMiddle(region.mesh, refined, e);
+      ++counters.halvedEdges;
+    }
+    ++counters.refinements;
+    const CrossField field = refinedField(region.mesh, refined, whole.field);
+    Draft draft(refined.mesh, field, seamGraph(refined.mesh, field), edgeLength);
+    const SeamBasis basis = draft.basis();
+    const auto maps =
+        untangledMaps(draft.problem(basis), std::nullopt, Effort::Full, counters, budget, progress);
+    counters.flippedBefore = flippedBefore;
+    if (maps.injective) {
+      draft.map.refined = std::move(refined);
+      return std::pair(std::move(draft), *maps.injective);
+    }
+    wrong = fewestWrong(draft, basis, maps);
+  }
+  return std::nullopt;
+}
+
+/// A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
+/// A tube that is not becomes a plane region, whose map cannot follow the field.
+void keepOneToOne(const Draft& draft, SeamlessMap& map, const Progress& progress) {
+  const auto& [mesh, field, unused] = draft;
+  if ((!map.seams.outerLoop && !map.seams.tube) || !field.aligned.empty() || !overlaps(map, map.seams))
+    return;
+  const double follow = map.seams.tube ? 0.0 : kFollow;
+  SeamlessMap grown = map;
+  grown.counters.scaffolded = true;
+  grown.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
+  const SeamBasis plane(mesh, grown.seams, {});
+  const Eigen::VectorXd apart =
+      oneToOneMap(mesh, grown.seams, grown.target, plane, follow, grown.counters, progress);
+  // Beyond that several surfaces serve better.
+  if (grown.counters.distortionEnd > kWorthOneSurface * map.counters.distortionEnd) return;
+  static_cast<Parametrization&>(grown) = exactMap(mesh, plane, apart, false);
+  map = std::move(grown);
+}
+
 }  // namespace
 
 SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, Effort effort,
-                        const Progress& progress) {
+                        StepBudget& budget, const Progress& progress) {
   if (!(edgeLength > 0) || !std::isfinite(edgeLength))
     throw inputError("seamless", "the edge length must be a positive number");
-  const auto& mesh = region.mesh;
-  SeamlessMap map;
-  map.seams = seamGraph(mesh, field);
-  map.target = mapTarget(mesh, field, map.seams.combing, edgeLength);
-  map.conformalTarget = map.target;
-  const auto scale = conformalScale(mesh, field);
-  for (size_t f = 0; f < scale.size(); ++f)
-    for (auto& corner : map.conformalTarget[f]) corner *= scale[f];
-  map.alignedSides = alignedSides(mesh, field.aligned, map.target);
-  map.index = field.index;
-  SeamConstraints constraints;
-  constraints.aligned = map.alignedSides;
-  if (map.seams.tube) {
-    // A tube's period lies along one axis: the one that its ends follow more. An oblique one would make the
-    // grid wind around the tube like a thread.
-    const Eigen::Vector2d around = lengthAlongEnd(mesh, field, map.target);
-    constraints.translations.resize(1);
-    constraints.translations[0][std::abs(around.x()) >= std::abs(around.y()) ? 1 : 0] = 0;
-  }
-  const SeamBasis basis(mesh, map.seams, constraints);
-  const Eigen::VectorXd z =
-      solveMap(mesh, map.seams, map.target, {map.target, map.conformalTarget}, std::nullopt, field.index,
-               basis, "seamless", effort, map.counters, progress);
-  static_cast<Parametrization&>(map) = exactMap(mesh, basis, z, false);
-  // A map in one chart can serve as the parameter plane of one trimmed surface, as long as it is one to one.
-  // A tube that is not becomes a plane region, whose map cannot follow the field.
-  if ((map.seams.outerLoop || map.seams.tube) && field.aligned.empty() && overlaps(map, map.seams)) {
-    const double follow = map.seams.tube ? 0.0 : kFollow;
-    SeamlessMap grown = map;
-    grown.counters.scaffolded = true;
-    grown.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));
-    const SeamBasis plane(mesh, grown.seams, {});
-    const Eigen::VectorXd apart =
-        oneToOneMap(mesh, grown.seams, grown.target, plane, follow, grown.counters, progress);
-    // Beyond that several surfaces serve better.
-    if (grown.counters.distortionEnd <= kWorthOneSurface * map.counters.distortionEnd) {
-      static_cast<Parametrization&>(grown) = exactMap(mesh, plane, apart, false);
-      map = std::move(grown);
+  Draft draft(region.mesh, field, seamGraph(region.mesh, field), edgeLength);
+  const SeamBasis basis = draft.basis();
+  MapCounters counters;
+  const auto maps = untangledMaps(draft.problem(basis), std::nullopt, effort, counters, budget, progress);
+  std::optional<Eigen::VectorXd> z = maps.injective;
+  if (!z && effort == Effort::Full)
+    if (auto found = locallyRefined(region, draft, fewestWrong(draft, basis, maps), edgeLength, counters,
+                                    budget, progress)) {
+      draft = std::move(found->first);
+      z = std::move(found->second);
     }
-  }
-  map.aligned = field.aligned;
+  if (!z) z = stubbornMap(draft.problem(basis), maps, effort, counters, budget, progress);
+  const SeamBasis finalBasis = draft.basis();
+  optimize(draft.problem(finalBasis), *z, counters, progress);
+  SeamlessMap map = draft.map;
+  map.counters = counters;
+  static_cast<Parametrization&>(map) = exactMap(draft.mesh, finalBasis, *z, false);
+  keepOneToOne(draft, map, progress);
+  map.aligned = draft.field.aligned;
   map.featurePoints = region.featurePoints;
   verify(map, false);
   return map;

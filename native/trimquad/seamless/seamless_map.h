@@ -1,13 +1,16 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "trimquad/base/progress.h"
 #include "trimquad/field/cross_field.h"
 #include "trimquad/mesh/parametrization.h"
+#include "trimquad/mesh/refined_mesh.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/seamless/seam_basis.h"
+#include "trimquad/seamless/step_budget.h"
 
 namespace trimquad {
 
@@ -20,8 +23,10 @@ struct MapCounters {
   int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
   int pathSteps = 0;           ///< steps from a nearby map's constraints to its own
   int untangleIterations = 0;  ///< Newton steps until none was
+  int refinements = 0;         ///< rounds of halving edges where triangles stayed turned over
+  int halvedEdges = 0;         ///< in these
   int stiffenings = 0;         ///< solves in which the target weighed more where the map went wrong before
-  int start = 0;               ///< which start succeeded, from 0: the first one, or a later one
+  int starts = 0;              ///< Poisson solves that untangling started from
   bool convexStart =
       false;  ///< whether untangling failed, and the map was grown from a convex (Tutte) embedding
   bool scaffolded =
@@ -39,6 +44,8 @@ struct SeamlessMap : Parametrization {
   std::vector<int>
       index;  ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
   MapCounters counters;
+  /// Where edges of the region had to be halved: its mesh with these, which the map is of.
+  std::optional<RefinedMesh> refined;
 };
 
 /// How hard to try.
@@ -50,6 +57,13 @@ enum class Effort {
 /// The seamless map whose gradients follow `field`, scaled so that one quad is `edgeLength` (model units)
 /// wide. Throws Error(Stage, "seamless") where no valid map was found, naming the first triangle.
 SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength, Effort effort,
-                        const Progress& progress);
+                        StepBudget& budget, const Progress& progress);
+
+/// The same with a budget of its own.
+inline SeamlessMap seamlessMap(const Region& region, const CrossField& field, double edgeLength,
+                               Effort effort, const Progress& progress) {
+  StepBudget budget;
+  return seamlessMap(region, field, edgeLength, effort, budget, progress);
+}
 
 }  // namespace trimquad

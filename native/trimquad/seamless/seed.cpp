@@ -7,6 +7,7 @@
 #include "trimquad/field/bridged_guidance.h"
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/field/singularity_free_field.h"
+#include "trimquad/seamless/local_refinement.h"
 
 namespace trimquad {
 namespace {
@@ -17,6 +18,8 @@ constexpr double kLittleDistortion = 4.5;
 
 /// How far the guidance reaches at full weight; see crossField.
 constexpr double kReach = 40;
+/// What a field leaves of the work for the ones after it, at least.
+constexpr double kForOthers = 0.5;
 constexpr double kCurvatureWeight = 0.1, kGivenWeight = 1;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
@@ -40,14 +43,15 @@ FieldGuidance guidanceFor(const Region& region, const SeedOptions& options, cons
 /// Runs `field`, then maps it; adds the seconds to `seed`. Returns the error where there is no map.
 template <typename Field>
 std::optional<Error> tryField(const Region& region, double edgeLength, const Field& field, Effort effort,
-                              const Progress& progress, Seed& seed) {
+                              StepBudget& budget, const Progress& progress, Seed& seed) {
   auto start = std::chrono::steady_clock::now();
   std::optional<Error> failure;
   try {
     seed.field = field();
     seed.fieldSeconds += secondsSince(start);
     start = std::chrono::steady_clock::now();
-    seed.map = seamlessMap(region, seed.field, edgeLength, effort, progress);
+    seed.map = seamlessMap(region, seed.field, edgeLength, effort, budget, progress);
+    if (seed.map.refined) seed.field = refinedField(region.mesh, *seed.map.refined, seed.field);
   } catch (const Error& error) {
     if (error.kind() != Error::Kind::Stage) throw;
     failure = error;
@@ -61,6 +65,7 @@ std::optional<Error> tryField(const Region& region, double edgeLength, const Fie
 Seed seed(const Region& region, const SeedOptions& options, const Progress& progress) {
   requireArea(region.mesh);
   Seed result;
+  StepBudget budget;
   const auto start = std::chrono::steady_clock::now();
   const FieldGuidance guidance = guidanceFor(region, options, progress);
   result.fieldSeconds = secondsSince(start);
@@ -80,7 +85,7 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   std::optional<Seed> without;
   const auto tryWithout = [&](Effort effort) {
     if (!without && mayDoWithout &&
-        !tryField(region, options.edgeLength, withoutSingularities, effort, progress, result))
+        !tryField(region, options.edgeLength, withoutSingularities, effort, budget, progress, result))
       without = result;
     return without && without->map.counters.distortionEnd <= kLittleDistortion;
   };
@@ -91,7 +96,9 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   std::optional<Seed> with;
   for (const double reach : reaches) {
     const auto field = [&] { return crossField(region, guidance, reach, progress); };
-    const auto error = tryField(region, options.edgeLength, field, Effort::Full, progress, result);
+    const double aside = budget.setAside(reach == reaches.back() ? 0 : kForOthers);
+    const auto error = tryField(region, options.edgeLength, field, Effort::Full, budget, progress, result);
+    budget.add(aside);
     if (!error) {
       with = result;
       break;

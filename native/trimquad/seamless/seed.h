@@ -29,6 +29,7 @@ struct SeedOptions {
 struct Seed {
   CrossField field;
   SeamlessMap map;
+  /// Where the map's mesh has halved edges (`map.refined`), the field is of that mesh as well.
   int fieldEdits = 0;  ///< smoother fields that were tried because no map followed the first one
   double fieldSeconds = 0, seamlessSeconds = 0;
 };

@@ -1,7 +1,9 @@
 #include "trimquad/seamless/solve_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <optional>
 
 #include "trimquad/base/error.h"
@@ -84,49 +86,89 @@ std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMe
   return std::nullopt;
 }
 
-[[noreturn]] void throwStillFlipped(const SurfaceMesh& mesh, const std::vector<int>& index,
-                                    const SeamBasis& basis, const MapEnergy& energy, const Eigen::VectorXd& x,
-                                    const std::string& stage) {
+/// The map in fixed-point numbers, at the finest scale that holds it.
+Parametrization roundedMap(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z) {
+  Parametrization map;
+  map.mesh = mesh;
+  const Eigen::VectorXd x = basis.basis().matrix() * z + basis.basis().offset();
+  map.scale = FixedScale::fitting(x.size() > 0 ? x.cwiseAbs().maxCoeff() : 1);
+  const auto exact = basis.basis().evaluateExact(z, map.scale.bits);
+  map.corner.resize(mesh.n_halfedges());
+  for (const auto h : mesh.halfedges())
+    if (!mesh.is_boundary(h))
+      map.corner[h.idx()] = {exact[basis.coordinate(basis.wedge(h), 0)],
+                             exact[basis.coordinate(basis.wedge(h), 1)]};
+  return map;
+}
+
+/// Whether the map still turns no triangle over once it is rounded: one that collapses is often positive in
+/// doubles by chance.
+bool staysPositive(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z) {
+  const Parametrization map = roundedMap(mesh, basis, z);
+  for (const auto f : mesh.faces()) {
+    const auto h = mesh.halfedge_handle(f), n = mesh.next_halfedge_handle(h);
+    if (orientation(map.from(h), map.from(n), map.to(n)) <= 0) return false;
+  }
+  return true;
+}
+
+[[noreturn]] void throwStillFlipped(const MapProblem& problem, const MapEnergy& energy,
+                                    const Eigen::VectorXd& x) {
+  const auto& mesh = problem.mesh;
   for (const auto f : mesh.faces())
     if (!(energy.jacobian(f.idx(), x).det() > 0))
-      throw stageError(stage,
+      throw stageError(problem.stage,
                        std::to_string(energy.flipped(x)) +
                            " triangles stay turned over in the map; a finer or smoother mesh may help",
                        "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
-  const auto wrong = wrongCones(mesh, index, basis, x);
-  TRIMQUAD_ASSERT(!wrong.empty());
-  throw stageError(stage, "the map winds around a vertex twice; a finer or smoother mesh may help",
+  const auto wrong = wrongCones(mesh, problem.index, problem.basis, x);
+  if (wrong.empty()) {
+    const auto thinner = [&](FaceHandle f, FaceHandle g) {
+      return energy.jacobian(f.idx(), x).det() < energy.jacobian(g.idx(), x).det();
+    };
+    const FaceHandle f = *std::min_element(mesh.faces_begin(), mesh.faces_end(), thinner);
+    throw stageError(problem.stage, "a triangle collapses in the map; a finer or smoother mesh may help",
+                     "triangle " + std::to_string(f.idx()), mesh.calc_face_centroid(f));
+  }
+  throw stageError(problem.stage, "the map winds around a vertex twice; a finer or smoother mesh may help",
                    "vertex " + std::to_string(wrong.front().idx()), mesh.point(wrong.front()));
 }
 
 }  // namespace
 
 void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
-              const Progress& progress) {
+              StepBudget& budget, const Progress& progress) {
   SparseSolver solver("seamless");
   double least = energy.smallestDeterminant(energy.coordinates(z));
   if (least > 0) return;
-  int fewest = energy.flipped(energy.coordinates(z));
-  double shallowest = least;
-  // Where it works, every few rounds halve the depth of the deepest fold, or turn triangles back. Energies go
-  // on falling for hundreds of steps where it does not.
-  constexpr int kRounds = 40, kStepsPerRound = 8, kPatience = 3;
+  // Where it works, every few rounds halve the depth of the deepest fold, or turn triangles back, or leave
+  // less area turned over. Energies go on falling for hundreds of steps where it does not. The first round
+  // spreads deep folds over many triangles: what it leaves is what the others have to be better than.
+  constexpr int kRounds = 40, kStepsPerRound = 8, kPatience = 4;
+  constexpr double kDense = 0.25;  // a multiplication in dense blocks takes so much of the others' time
+  int fewest = std::numeric_limits<int>::max();
+  double shallowest = least, smallest = std::numeric_limits<double>::infinity();
   for (int round = 0, idle = 0; round < kRounds && idle < kPatience; ++round) {
     const double depth = std::min(0.0, least), epsilon = std::sqrt(1e-12 + 0.04 * depth * depth);
     const auto density = [&](double I, double D) { return foldoverFree(I, D, epsilon); };
     const double roundStart = least;
     for (int step = 0; step < kStepsPerRound; ++step) {
       progress.check();
+      if (budget.spent()) return;
       const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
       ++iterations;
+      budget.spend(energy.stepWork() + kDense * solver.work());
       least = energy.smallestDeterminant(energy.coordinates(z));
       if (least > 0) return;
       if (least > roundStart / 2 || decrease < 1e-5) break;
     }
-    const int flipped = energy.flipped(energy.coordinates(z));
-    idle = least > shallowest / 2 || flipped < fewest ? 0 : idle + 1;
+    const Eigen::VectorXd x = energy.coordinates(z);
+    const int flipped = energy.flipped(x);
+    const double turned = energy.value(x, turnedArea, 0);
+    idle = least > shallowest / 2 || flipped < fewest || turned < smallest / 2 ? 0 : idle + 1;
     fewest = std::min(fewest, flipped);
     shallowest = std::max(shallowest, least);
+    smallest = std::min(smallest, turned);
   }
 }
 
@@ -146,84 +188,103 @@ Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, con
   return leastSquares(MapEnergy(mesh, target, basis), basis);
 }
 
-Eigen::VectorXd solveMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
-                         const std::vector<MapTarget>& starts, const std::optional<Eigen::VectorXd>& nearby,
-                         const std::vector<int>& index, const SeamBasis& basis, const std::string& stage,
-                         Effort effort, MapCounters& counters, const Progress& progress) {
+bool isInjective(const MapProblem& problem, const MapEnergy& energy, const Eigen::VectorXd& z) {
+  const Eigen::VectorXd x = energy.coordinates(z);
+  return energy.flipped(x) == 0 && wrongCones(problem.mesh, problem.index, problem.basis, x).empty() &&
+         staysPositive(problem.mesh, problem.basis, z);
+}
+
+std::vector<MapStart> startsOf(const std::vector<const MapTarget*>& targets) {
+  std::vector<MapStart> starts;
+  for (const double evenness : {0.5, 1.0})
+    for (const auto* target : targets) starts.push_back({target, evenness});
+  return starts;
+}
+
+UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen::VectorXd>& nearby,
+                            Effort effort, MapCounters& counters, StepBudget& budget,
+                            const Progress& progress) {
+  const auto& [mesh, seams, target, starts, index, basis, stage] = problem;
   const MapEnergy energy(mesh, target, basis);
-  Eigen::VectorXd z;
-  const auto injective = [&] {
-    return energy.flipped(energy.coordinates(z)) == 0 &&
-           wrongCones(mesh, index, basis, energy.coordinates(z)).empty();
-  };
   if (const auto flat = energy.heldFlat(); !flat.empty())
     throw stageError(stage, "the seams, aligned edges or integers around a triangle leave it no area",
                      "triangle " + std::to_string(flat.front()),
                      mesh.calc_face_centroid(FaceHandle(flat.front())));
-  bool found = false;
-  std::vector<Eigen::VectorXd> reached;  // by start
-  for (size_t k = 0; k < starts.size() && !found; ++k) {
-    counters.start = int(k);
-    z = poissonMap(mesh, starts[k], basis);
-    progress.report(0.2);
-    const int flipped = energy.flipped(energy.coordinates(z));
-    if (k == 0) counters.flippedBefore = flipped;
-    constexpr double kEasy = 1e-3;  // of the triangles
-    if (effort == Effort::Easy && flipped > kEasy * double(mesh.n_faces())) break;
-    if (!(found = injective()) && k == 0 && nearby) {
-      if (const auto moved =
-              followConstraints(mesh, target, index, basis, *nearby, counters.pathSteps, progress)) {
-        z = *moved;
-        found = injective();
-      }
+  UntangledMaps maps;
+  Eigen::VectorXd z = poissonMap(mesh, *starts.front().target, basis);
+  progress.report(0.2);
+  counters.flippedBefore = energy.flipped(energy.coordinates(z));
+  constexpr double kEasy = 1e-3;  // of the triangles
+  const bool isHard = counters.flippedBefore > kEasy * double(mesh.n_faces());
+  if (isInjective(problem, energy, z)) maps.injective = z;
+  if (effort == Effort::Easy && isHard) maps.reached.push_back(z);
+  if (!maps.reached.empty() || maps.injective) return maps;
+  if (nearby)
+    if (const auto moved =
+            followConstraints(mesh, target, index, basis, *nearby, counters.pathSteps, budget, progress);
+        moved && isInjective(problem, energy, *moved)) {
+      maps.injective = moved;
+      return maps;
     }
-    if (!found) {
-      untangle(MapEnergy(mesh, starts[k], basis), basis, z, counters.untangleIterations, progress);
-      found = injective();
-    }
-    reached.push_back(z);
+  for (const auto& start : starts) {
+    ++counters.starts;
+    MapEnergy even(mesh, *start.target, basis);
+    even.evenOut(start.evenness);
+    z = leastSquares(even, basis);
+    untangle(even, basis, z, counters.untangleIterations, budget, progress);
+    maps.reached.push_back(z);
+    if (!isInjective(problem, energy, z)) continue;
+    maps.injective = z;
+    break;
   }
-  for (size_t k = 0; k < reached.size() && !found; ++k) {
-    counters.start = int(k);
-    z = reached[k];
-    if (const auto stiffened = stiffenedMap(mesh, starts[k], index, basis, z, counters, progress)) {
-      z = *stiffened;
-      found = true;
-    }
-  }
-  if (!found && effort == Effort::Full) {
+  return maps;
+}
+
+Eigen::VectorXd stubbornMap(const MapProblem& problem, const UntangledMaps& maps, Effort effort,
+                            MapCounters& counters, StepBudget& budget, const Progress& progress) {
+  const auto& [mesh, seams, target, starts, index, basis, stage] = problem;
+  for (size_t k = 0; k < maps.reached.size() && !budget.spent(); ++k)
+    if (const auto stiffened =
+            stiffenedMap(mesh, starts[k], index, basis, maps.reached[k], counters, budget, progress))
+      return *stiffened;
+  const MapEnergy energy(mesh, target, basis);
+  if (effort == Effort::Full)
     if (const auto grown = grownMap(energy, mesh, seams, target, basis, poissonMap(mesh, target, basis))) {
-      z = *grown;
-      counters.convexStart = found = true;
+      counters.convexStart = true;
+      return *grown;
     }
-  }
-  if (!found) throwStillFlipped(mesh, index, basis, energy, energy.coordinates(z), stage);
+  throwStillFlipped(problem, energy, energy.coordinates(maps.reached.back()));
+}
+
+void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counters,
+              const Progress& progress) {
+  const MapEnergy energy(problem.mesh, problem.target, problem.basis);
   progress.report(0.5);
   counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
-  SparseSolver solver(stage);
+  SparseSolver solver(problem.stage);
   const int most = counters.convexStart ? 200 : 50;
   for (int i = 0; i < most; ++i) {
-    const double decrease = newtonStep(energy, basis, symmetricDirichlet, kFollow, true, solver, z);
+    const double decrease = newtonStep(energy, problem.basis, symmetricDirichlet, kFollow, true, solver, z);
     ++counters.iterations;
     progress.report(0.5 + 0.5 * i / most);
     if (decrease < kConverged) break;
   }
   counters.distortionEnd = energy.meanSymmetricDirichlet(energy.coordinates(z));
+}
+
+Eigen::VectorXd solveMap(const MapProblem& problem, const std::optional<Eigen::VectorXd>& nearby,
+                         MapCounters& counters, const Progress& progress) {
+  StepBudget budget;
+  const auto maps = untangledMaps(problem, nearby, Effort::Full, counters, budget, progress);
+  Eigen::VectorXd z =
+      maps.injective ? *maps.injective : stubbornMap(problem, maps, Effort::Full, counters, budget, progress);
+  optimize(problem, z, counters, progress);
   return z;
 }
 
 Parametrization exactMap(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::VectorXd& z,
                          bool integer) {
-  Parametrization map;
-  map.mesh = mesh;
-  const Eigen::VectorXd x = basis.basis().matrix() * z + basis.basis().offset();
-  map.scale = FixedScale::fitting(x.size() > 0 ? x.cwiseAbs().maxCoeff() : 1);
-  const auto exact = basis.basis().evaluateExact(z, map.scale.bits);
-  map.corner.resize(mesh.n_halfedges());
-  for (const auto h : mesh.halfedges())
-    if (!mesh.is_boundary(h))
-      map.corner[h.idx()] = {exact[basis.coordinate(basis.wedge(h), 0)],
-                             exact[basis.coordinate(basis.wedge(h), 1)]};
+  Parametrization map = roundedMap(mesh, basis, z);
   verify(map, integer);
   return map;
 }

@@ -28,15 +28,16 @@ std::vector<char> around(const SurfaceMesh& mesh, const std::vector<VertexHandle
 
 }  // namespace
 
-std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapTarget& target,
+std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapStart& start,
                                             const std::vector<int>& index, const SeamBasis& basis,
-                                            Eigen::VectorXd z, MapCounters& counters,
+                                            Eigen::VectorXd z, MapCounters& counters, StepBudget& budget,
                                             const Progress& progress) {
   constexpr int kRounds = 12, kPatience = 2, kRings = 2;
   constexpr double kFactor = 3;
-  MapEnergy energy(mesh, target, basis);
+  MapEnergy energy(mesh, *start.target, basis);
+  energy.evenOut(start.evenness);
   size_t fewest = std::numeric_limits<size_t>::max();
-  for (int round = 0, idle = 0; round < kRounds && idle < kPatience; ++round) {
+  for (int round = 0, idle = 0; round < kRounds && idle < kPatience && !budget.spent(); ++round) {
     progress.check();
     const auto wrong = troubled(mesh, index, basis, energy, energy.coordinates(z));
     if (wrong.empty()) return z;
@@ -48,7 +49,7 @@ std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapTa
     energy.stiffen(factor);
     z = leastSquares(energy, basis);
     ++counters.stiffenings;
-    untangle(energy, basis, z, counters.untangleIterations, progress);
+    untangle(energy, basis, z, counters.untangleIterations, budget, progress);
   }
   return std::nullopt;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "trimquad/base/progress.h"
-#include "trimquad/seamless/map_energy.h"
+#include "trimquad/seamless/solve_map.h"
 
 namespace trimquad {
 
@@ -11,9 +11,9 @@ namespace trimquad {
 /// stiffening: Bommes, Zimmer, Kobbelt 2009) Gives up, with nothing, once fewer and fewer of them is not what
 /// comes of it.
 /// \param z  where to begin: a map that is not locally injective
-std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapTarget& target,
+std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapStart& start,
                                             const std::vector<int>& index, const SeamBasis& basis,
-                                            Eigen::VectorXd z, MapCounters& counters,
+                                            Eigen::VectorXd z, MapCounters& counters, StepBudget& budget,
                                             const Progress& progress);
 
 }  // namespace trimquad

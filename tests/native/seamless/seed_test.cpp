@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
 #include "support/sample_regions.h"
@@ -152,12 +153,62 @@ TEST(Seed, aTorusWithOneCone3AndOneCone5IsRefusedAtOnce) {
   --field.matching[o.idx()];
   --field.index[r.mesh.to_vertex_handle(in).idx()];
   ++field.index[r.mesh.from_vertex_handle(in).idx()];
+  StepBudget budget;
   try {
-    seamlessMap(r, field, 0.5, Effort::Full, Progress());
+    seamlessMap(r, field, 0.5, Effort::Full, budget, Progress());
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("no area"), std::string::npos) << error.what();
   }
+}
+
+/// Three triangles around a vertex, with a field that turns there so that the map must wind by `quarters`.
+std::pair<Region, CrossField> fanWithACone(int quarters) {
+  TriangleSoup soup;
+  soup.points.emplace_back(0, 0, 0);
+  for (int k = 0; k < 3; ++k) {
+    const double a = 2 * std::numbers::pi * k / 3;
+    soup.points.emplace_back(std::cos(a), std::sin(a), 0);
+    soup.triangles.push_back({0, 1 + k, 1 + (k + 1) % 3});
+  }
+  Region r = sample::region(soup);
+  CrossField field = crossField(r, curvatureGuidance(r, Progress()), 0, Progress());
+  const int extra = quarters - 4;
+  for (int k = 0; k < 3; ++k) {
+    const double a = -extra * k * std::numbers::pi / 6;
+    field.direction[size_t(k)] = {std::cos(a), std::sin(a), 0};
+  }
+  std::fill(field.matching.begin(), field.matching.end(), 0);
+  const auto in = r.mesh.find_halfedge(VertexHandle(1), VertexHandle(0));
+  field.matching[in.idx()] = extra;
+  field.matching[r.mesh.opposite_halfedge_handle(in).idx()] = -extra;
+  field.index[0] = -extra;
+  field.loopTurns = {4 + extra};
+  return {r, field};
+}
+
+TEST(Seed, aFanTooSmallForItsConeIsRefined) {
+  // Three triangles have less than six quarters of angle at one vertex.
+  for (const int quarters : {3, 4, 5, 6, 7}) {
+    SCOPED_TRACE(quarters);
+    const auto [r, field] = fanWithACone(quarters);
+    StepBudget budget;
+    const SeamlessMap map = seamlessMap(r, field, 0.3, Effort::Full, budget, Progress());
+    verify(map, false);
+    EXPECT_EQ(coneQuarters(map)[0], quarters);
+    EXPECT_EQ(map.refined.has_value(), quarters >= 6);
+    EXPECT_EQ(map.counters.refinements > 0, quarters >= 6);
+    if (!map.refined) continue;
+    EXPECT_EQ(map.mesh.n_faces(), map.refined->mesh.n_faces());
+    EXPECT_GT(map.counters.halvedEdges, 0);
+  }
+}
+
+TEST(Seed, aSpentBudgetEndsTheSearchWithAnError) {
+  const auto [r, field] = fanWithACone(6);
+  StepBudget budget;
+  budget.spend(1e300);
+  EXPECT_THROW(seamlessMap(r, field, 0.3, Effort::Full, budget, Progress()), Error);
 }
 
 /// A small surface of genus 0, 1 or 2, rough, and its map.
@@ -169,6 +220,15 @@ std::optional<std::pair<Region, SeamlessMap>> randomMap(unsigned number, std::mt
                                         : sample::sheet(n + 2, n + 3, sample::wavy);
   for (auto& p : soup.points) p += Eigen::Vector3d(noise(random), noise(random), noise(random));
   Region r = sample::region(soup);
+  if (number % 2 == 1)
+    for (const auto e : r.mesh.edges()) {
+      const auto h = r.mesh.halfedge_handle(e, 0);
+      const bool sharp = !r.mesh.is_boundary(e) &&
+                         r.mesh.calc_face_normal(r.mesh.face_handle(h))
+                                 .dot(r.mesh.calc_face_normal(r.mesh.opposite_face_handle(h))) < 0.7;
+      if (sharp || r.mesh.is_boundary(e)) r.aligned.push_back(e);
+    }
+  splitConstrainedTriangles(r);
   try {
     SeamlessMap map = seedOf(r, 0.1 + 0.1 * double(random() % 5)).map;
     return std::pair(std::move(r), std::move(map));
@@ -178,19 +238,22 @@ std::optional<std::pair<Region, SeamlessMap>> randomMap(unsigned number, std::mt
 }
 
 TEST(ExactMap, aMapThatIsValidInDoublesStaysValid) {
-  int maps = 0;
+  int maps = 0, aligned = 0, singular = 0, alignedAndSingular = 0;
   constexpr int kPerSurface = 20;
   for (unsigned number = 0; number < sample::rounds(150); ++number) {
     SCOPED_TRACE(number);
     std::mt19937 random(number);
     const auto sample = randomMap(number, random);
     if (!sample) continue;
-    const auto& [r, map] = *sample;
-    const SeamBasis basis(r.mesh, map.seams, {});
-    const MapEnergy energy(r.mesh, map.target, basis);
+    const SeamlessMap& map = sample->second;
+    const SurfaceMesh& mesh = map.mesh;
+    SeamConstraints constraints;
+    constraints.aligned = map.alignedSides;
+    const SeamBasis basis(mesh, map.seams, constraints);
+    const MapEnergy energy(mesh, map.target, basis);
     Eigen::VectorXd x(basis.basis().variableCount());
-    for (const auto h : r.mesh.halfedges()) {
-      if (r.mesh.is_boundary(h)) continue;
+    for (const auto h : mesh.halfedges()) {
+      if (mesh.is_boundary(h)) continue;
       const Eigen::Vector2d corner = map.scale.toQuads(map.from(h));
       for (int axis = 0; axis < 2; ++axis) x[basis.coordinate(basis.wedge(h), axis)] = corner[axis];
       const auto& crossing = map.seams.crossing[h.idx()];
@@ -210,11 +273,20 @@ TEST(ExactMap, aMapThatIsValidInDoublesStaysValid) {
       const double part = 1 - std::pow(10.0, -double(k % 6));
       const Eigen::VectorXd z = start + part * furthest * direction;
       if (energy.flipped(energy.coordinates(z)) > 0) continue;
-      EXPECT_NO_THROW(exactMap(r.mesh, basis, z, false)) << "up to " << part << " of the way";
+      EXPECT_NO_THROW(exactMap(mesh, basis, z, false)) << "up to " << part << " of the way";
       ++maps;
     }
+    const bool hasAligned = !map.aligned.empty();
+    const bool hasSingular =
+        std::any_of(map.index.begin(), map.index.end(), [](int index) { return index != 0; });
+    aligned += hasAligned;
+    singular += hasSingular;
+    alignedAndSingular += hasAligned && hasSingular;
   }
   EXPECT_GT(maps, int(sample::rounds(150)) * kPerSurface * 3 / 4);
+  EXPECT_GT(aligned, 0);
+  EXPECT_GT(singular, 0);
+  EXPECT_GT(alignedAndSingular, 0);
 }
 
 TEST(Seed, countsDoNotChangeWithPlaceScaleOrNumbering) {

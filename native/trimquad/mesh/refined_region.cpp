@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "trimquad/embed/refined_mesh.h"
+#include "trimquad/mesh/refined_mesh.h"
 
 namespace trimquad {
 namespace {

@@ -1,4 +1,4 @@
-#include "trimquad/embed/refined_mesh.h"
+#include "trimquad/mesh/refined_mesh.h"
 
 #include <algorithm>
 

@@ -1,0 +1,28 @@
+#pragma once
+
+namespace trimquad {
+
+/// The work that Newton steps on maps of one region may still do before the search for a map is given up:
+/// the rungs of the ladder share it. Counted in operations, not in seconds, so that the outcome does not
+/// depend on the machine.
+class StepBudget {
+ public:
+  StepBudget() = default;
+
+  bool spent() const { return left_ <= 0; }
+  void spend(double work) { left_ -= work; }
+
+  /// Puts a share of what is left aside while some attempts run. Returns what is put aside.
+  double setAside(double share) {
+    const double aside = share * (left_ > 0 ? left_ : 0);
+    left_ -= aside;
+    return aside;
+  }
+  void add(double work) { left_ += work; }
+
+ private:
+  static constexpr double kWork = 4e11;  // multiply-adds, about a minute
+  double left_ = kWork;
+};
+
+}  // namespace trimquad
