@@ -4,6 +4,8 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple, Tuple
 
+import numpy
+
 from .error import Error, cancelled, input_error, system_error
 from .freecad_shape import shape_from_bytes
 from .native import load
@@ -81,8 +83,9 @@ class RegionResult:
         return 0 if self.field is None else len(self.field.singular_vertices) - len(self.singularities)
 
     def _vertices_of_bridges(self):
-        corners, first = self.bridged.corners, self.region.triangles
-        return set(corners[first:].ravel().tolist())  # bridges come last
+        if not self.bridged.bridge:
+            return set()
+        return set(self.bridged.corners[numpy.array(self.bridged.bridge, dtype=bool)].ravel().tolist())
 
     @property
     def seamless_map(self):
@@ -426,8 +429,10 @@ def _try_region(item, index, result, progress):
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     if seed.refined:
         # The model's region gets halved edges; the field and all maps are of these.
-        item.guidance = native.place_refined(result.model, index, seed, item.guidance)
-        item.region = item.mapped_region = result.model.regions[index]
+        whole, item.guidance = native.place_refined(result.model, index, item.bridged, seed, item.guidance)
+        region = result.model.regions[index]
+        item.bridged = region if item.bridged is item.region else whole
+        item.region = item.mapped_region = region
     item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
     if options.wants("partition"):
         item.tmesh = run("partition", native.partition, item.seamless)

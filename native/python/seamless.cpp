@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.h"
+#include "trimquad/field/bridged_guidance.h"
 #include "trimquad/mesh/hole_bridges.h"
 #include "trimquad/mesh/write_obj.h"
 #include "trimquad/seamless/local_refinement.h"
@@ -68,15 +69,26 @@ void bindSeamless(py::module_& m) {
       "follow: 'curvature' or 'smooth', where there is no `guidance`; weight: how closely, 0 to 1, or None");
   m.def(
       "place_refined",
-      [](Model& model, int index, const Seed& seed, std::optional<FieldGuidance> guidance) {
+      [](Model& model, int index, const Region& bridged, const Seed& seed,
+         std::optional<FieldGuidance> guidance) {
         const RefinedMesh& refined = *seed.map.refined;
-        Region& region = model.regions.at(std::size_t(index));
-        region = refinedRegion(region, model.curves, refined);
-        if (guidance) guidance = refinedGuidance(refined, *guidance);
-        return guidance;
+        Region region = refinedRegion(bridged, model.curves, refined);
+        if (guidance) {
+          const FieldGuidance all = refinedGuidance(refined, overBridges(*guidance, bridged));
+          guidance = FieldGuidance{};
+          for (std::size_t t = 0; t < all.direction.size(); ++t)
+            if (region.bridge.empty() || !region.bridge[t]) {
+              guidance->direction.push_back(all.direction[t]);
+              guidance->weight.push_back(all.weight[t]);
+            }
+        }
+        model.regions.at(std::size_t(index)) = withoutBridges(region);
+        return std::make_tuple(std::move(region), std::move(guidance));
       },
-      py::arg("model"), py::arg("index"), py::arg("seed"), py::arg("guidance"), Released(),
-      "The region of the model gets the mesh with halved edges that the map is of. Returns its guidance.");
+      py::arg("model"), py::arg("index"), py::arg("bridged"), py::arg("seed"), py::arg("guidance"),
+      Released(),
+      "The region of the model gets the mesh with halved edges that the map is of, without what bridges its "
+      "holes. Returns that mesh with it, and the guidance of the region.");
 }
 
 }  // namespace trimquad
