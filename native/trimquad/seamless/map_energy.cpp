@@ -57,9 +57,12 @@ void MapEnergy::setScaffold(int first, double weight) {
 }
 
 void MapEnergy::evenOut(double evenness) {
+  // Slivers that weighed as much as their neighbours would leave systems without digits.
+  constexpr double kMostRaised = 1e4;
   const double mean = totalArea_ / double(local_.size());
   double total = 0;
-  for (auto& local : local_) total += local.area *= std::pow(mean / local.area, evenness);
+  for (auto& local : local_)
+    total += local.area *= std::pow(std::min(mean / local.area, kMostRaised), evenness);
   for (auto& local : local_) local.area *= totalArea_ / total;
 }
 
