@@ -7,3 +7,18 @@ _POINTS = {1: (0.84, 0.15, 0.16), -1: (0.12, 0.31, 0.84), 2: (0.50, 0.06, 0.06),
 def point_colour(index):
     """Red, green, blue of a singular vertex of that index: reds where fewer than four quads meet, blues where more do."""
     return _POINTS.get(index, _POINTS[2 if index > 0 else -2])
+
+
+# Deviations as parts of the tolerance, from 0 to 1: dark blue, green, yellow. Beyond, where the tolerance is not kept, red.
+_DEVIATIONS = ((0.16, 0.23, 0.55), (0.13, 0.47, 0.62), (0.21, 0.68, 0.51), (0.66, 0.84, 0.26), (0.99, 0.91, 0.15))
+BEYOND_TOLERANCE = (0.84, 0.15, 0.16)
+
+
+def deviation_colour(part):
+    """Red, green, blue of a deviation of that part of the tolerance."""
+    if not part <= 1:
+        return BEYOND_TOLERANCE
+    step = max(part, 0.0) * (len(_DEVIATIONS) - 1)
+    first = min(int(step), len(_DEVIATIONS) - 2)
+    share = step - first
+    return tuple((1 - share) * a + share * b for a, b in zip(_DEVIATIONS[first], _DEVIATIONS[first + 1]))

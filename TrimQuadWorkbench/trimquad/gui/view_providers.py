@@ -2,7 +2,7 @@
 import FreeCADGui
 from pivy import coin
 
-from ..colours import point_colour
+from ..colours import deviation_colour, point_colour
 from ..features.quad_mesh import polygons_of
 from . import icon_path
 
@@ -32,8 +32,41 @@ class _View:
 
 
 class SplineShellView(_View):
+    """Can colour each face by its largest deviation; the faces stay faces, to be selected and measured."""
+
+    def __init__(self, vobj):
+        self._ensure_properties(vobj)
+        super().__init__(vobj)
+
+    def _ensure_properties(self, vobj):
+        if not hasattr(vobj, "ColourByDeviation"):
+            vobj.addProperty(
+                "App::PropertyBool", "ColourByDeviation", "Deviation",
+                "Colour each face by its largest deviation: from blue, none, to yellow, all of the tolerance; red beyond",
+            )
+
     def attach(self, vobj):
         self.Object = vobj.Object
+        self._ensure_properties(vobj)
+
+    def updateData(self, obj, name):
+        vobj = obj.ViewObject
+        if name in ("FaceDeviations", "AllowedDeviation") and getattr(vobj, "ColourByDeviation", False):
+            self._colour(vobj)
+
+    def onChanged(self, vobj, name):
+        if name == "ColourByDeviation":
+            self._colour(vobj)
+        elif name == "ShapeColor" and getattr(vobj, "ColourByDeviation", False):
+            self._colour(vobj)  # FreeCAD gives all faces the new one
+
+    def _colour(self, vobj):
+        shell = vobj.Object
+        deviations, allowed = getattr(shell, "FaceDeviations", []), getattr(shell, "AllowedDeviation", 0.0)
+        if vobj.ColourByDeviation and allowed > 0 and len(deviations) == len(shell.Shape.Faces):
+            vobj.DiffuseColor = [deviation_colour(d / allowed) for d in deviations]
+        else:
+            vobj.DiffuseColor = [vobj.ShapeColor[:3]]
 
     def getIcon(self):
         return icon_path("TrimQuad_SplineShell")
