@@ -56,17 +56,25 @@ class SplineShellView(_View):
 
     def onChanged(self, vobj, name):
         if name == "ColourByDeviation":
-            self._colour(vobj)
-        elif name == "ShapeColor" and getattr(vobj, "ColourByDeviation", False):
-            self._colour(vobj)  # FreeCAD gives all faces the new one
+            if vobj.ColourByDeviation:
+                self._colour(vobj)
+            else:
+                vobj.DiffuseColor = [vobj.ShapeColor[:3]]
+        elif name == "DiffuseColor" and getattr(vobj, "ColourByDeviation", False):
+            self._colour(vobj)  # FreeCAD gave all faces the shape's new colour
 
     def _colour(self, vobj):
-        shell = vobj.Object
+        colours = self._deviation_colours(vobj.Object)
+        if colours and not _alike(colours, vobj.DiffuseColor):
+            vobj.DiffuseColor = colours
+
+    @staticmethod
+    def _deviation_colours(shell):
+        """A colour for each face; none while the deviations are not those of the shape's faces."""
         deviations, allowed = getattr(shell, "FaceDeviations", []), getattr(shell, "AllowedDeviation", 0.0)
-        if vobj.ColourByDeviation and allowed > 0 and len(deviations) == len(shell.Shape.Faces):
-            vobj.DiffuseColor = [deviation_colour(d / allowed) for d in deviations]
-        else:
-            vobj.DiffuseColor = [vobj.ShapeColor[:3]]
+        if allowed <= 0 or len(deviations) != len(shell.Shape.Faces):
+            return []
+        return [deviation_colour(d / allowed) for d in deviations]
 
     def getIcon(self):
         return icon_path("TrimQuad_SplineShell")
@@ -92,6 +100,13 @@ class SplineShellView(_View):
     def doubleClicked(self, vobj):
         vobj.Document.setEdit(vobj.Object.Name)
         return True
+
+
+def _alike(colours, others):
+    """Whether they differ by no more than the 3D view's colours are rounded."""
+    return len(colours) == len(others) and all(
+        abs(x - y) < 0.005 for colour, other in zip(colours, others) for x, y in zip(colour, other)
+    )
 
 
 class QuadMeshView(_View):
