@@ -19,9 +19,9 @@ OPEN, CLOSED = ("map", "quads", "nurbs"), ("tmesh", "tmesh_unfolded", "quads")
 # pictures' name: (file, options, pictures)
 EXAMPLES = {
     "hood": ("hood", {"quads": 500}, OPEN),
-    "tube": ("tube", {"quads": 550}, OPEN),
+    "tube": ("tube", {"quads": 550}, (*OPEN, "nurbs-deviation")),
     "sheet": ("sheet", {"quads": 450}, OPEN),
-    "box_with_fillets": ("box_with_fillets", {"quads": 600}, OPEN),
+    "box_with_fillets": ("box_with_fillets", {"quads": 600}, (*OPEN, "nurbs-deviation")),
     "tee": ("closed/tee", {"quads": 1500}, CLOSED),
     "wing": ("flow/wing", {"quads": 1500, "align": ["Edge2", "Edge3"]}, ("quads",)),
     "wing-aligned": ("flow/wing", {"quads": 1500, "boundary": "aligned"}, ("quads",)),

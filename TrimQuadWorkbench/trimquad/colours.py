@@ -18,3 +18,18 @@ def checker_pixels(size):
     half = size // 2
     even, odd = light * half + dark * (size - half), dark * half + light * (size - half)
     return even * half + odd * (size - half)
+
+
+# Deviations as parts of the tolerance, from 0 to 1: dark blue, green, yellow. Beyond, where the tolerance is not kept, red.
+_DEVIATIONS = ((0.16, 0.23, 0.55), (0.13, 0.47, 0.62), (0.21, 0.68, 0.51), (0.66, 0.84, 0.26), (0.99, 0.91, 0.15))
+BEYOND_TOLERANCE = (0.84, 0.15, 0.16)
+
+
+def deviation_colour(part):
+    """Red, green, blue of a deviation of that part of the tolerance."""
+    if not part <= 1:
+        return BEYOND_TOLERANCE
+    step = max(part, 0.0) * (len(_DEVIATIONS) - 1)
+    first = min(int(step), len(_DEVIATIONS) - 2)
+    share = step - first
+    return tuple((1 - share) * a + share * b for a, b in zip(_DEVIATIONS[first], _DEVIATIONS[first + 1]))

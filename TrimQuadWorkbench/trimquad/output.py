@@ -12,7 +12,7 @@ from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
     r"(seamless|gridmap|quads|texture)(-\d+)?\.obj|tmesh(-\d+)?\.json|texture\.(mtl|png)|nurbs\.(step|brep)"
-    r"|report\.json|trimquad\.FCStd|(map|quads|histograms|nurbs|tmesh|tmesh_unfolded)\.png"
+    r"|report\.json|trimquad\.FCStd|(map|quads|histograms|nurbs|nurbs-deviation|tmesh|tmesh_unfolded)\.png"
 )
 
 
@@ -92,7 +92,7 @@ def write_result(result, folder, progress):
 def _write_result(result, folder, progress):
     started = time.monotonic()
     native, kinds = load(), result.options.write
-    with progress.stage("write"):
+    with progress.stage("write") as native_progress:
         for kind, attribute in (("seamless", "seamless_map"), ("gridmap", "grid"), ("quads", "quads")):
             if kind in kinds:
                 for index, item in enumerate(result.regions):
@@ -120,7 +120,7 @@ def _write_result(result, folder, progress):
         if "pictures" in kinds:
             from .pictures import write_pictures
 
-            write_pictures(result, folder.scratch, progress)
+            write_pictures(result, folder.scratch, progress, native_progress)
         result.seconds["write"] = time.monotonic() - started
         if "report" in kinds:
             folder.write_text("report.json", json.dumps(result.report, indent=1) + "\n")

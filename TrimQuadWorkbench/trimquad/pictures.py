@@ -1,7 +1,8 @@
 """Pictures of a result: the map as a checker on the surface with its singular vertices, the quads, the B-spline faces."""
 import numpy
 
-from .colours import CHECKS, point_colour
+from .colours import BEYOND_TOLERANCE, CHECKS, deviation_colour, point_colour
+from .deviation import deviation_maps, worst_place
 from .error import input_error
 from .freecad_shape import shape_from_bytes
 from .histograms import histograms, sum_of, write_histograms
@@ -21,8 +22,8 @@ ALIGNED_COLOUR = "#0a7d3c"
 LIGHT = numpy.array([0.35, -0.45, 0.82])
 
 
-def write_pictures(result, path_of, progress):
-    """Write map.png, tmesh.png, tmesh_unfolded.png, quads.png, histograms.png and nurbs.png where the stages got that far. `path_of(name)` says where."""
+def write_pictures(result, path_of, progress, native_progress):
+    """Write map.png, tmesh.png, tmesh_unfolded.png, quads.png, histograms.png, nurbs.png and nurbs-deviation.png where the stages got that far. `path_of(name)` says where."""
     try:
         import matplotlib
 
@@ -46,8 +47,10 @@ def write_pictures(result, path_of, progress):
         write_histograms([("", sum_of(counts))], path_of("histograms.png"))
     progress.check()
     if result.native_shape is not None:
-        faces, lines = _faces(result)
-        _save(path_of("nurbs.png"), faces, lines)
+        faces, edges = _faces(result)
+        _save(path_of("nurbs.png"), faces, [(edges, 1.1, LINE_COLOUR)])
+        progress.check()
+        _save_deviation(result, edges, path_of("nurbs-deviation.png"), native_progress)
 
 
 def _checker(corners, images):
@@ -85,7 +88,7 @@ def _lines(polygons):
 def _faces(result):
     shape = shape_from_bytes(load().shape_to_freecad(result.native_shape))
     chord = result.model.diagonal / 1500
-    faces, lines = [], []
+    faces, segments = [], []
     for index, face in enumerate(shape.Faces):
         points, triangles = face.tessellate(chord)
         points = numpy.array([tuple(p) for p in points])
@@ -95,8 +98,38 @@ def _faces(result):
         faces.append((corners, numpy.tile(FACE_COLOURS[index % len(FACE_COLOURS)], (len(corners), 1))))
     for edge in shape.Edges:
         points = numpy.array([tuple(p) for p in edge.discretize(60)])
-        lines.append((numpy.stack([points[:-1], points[1:]], axis=1), 1.1, LINE_COLOUR))
-    return faces, lines
+        segments.append(numpy.stack([points[:-1], points[1:]], axis=1))
+    return faces, numpy.concatenate(segments)
+
+
+def _save_deviation(result, edges, path, native_progress):
+    """The faces coloured by their distance from the input, a circle around each region's place of largest deviation."""
+    tolerance = result.options.tolerance
+    surfaces, largest = [], 0.0
+    for points, distances, triangles in deviation_maps(result, native_progress):
+        parts = distances[triangles].mean(axis=1) / tolerance
+        surfaces.append((points[triangles], numpy.array([deviation_colour(p) for p in parts])))
+        largest = max(largest, distances.max() / tolerance)
+    drawing, axes = _painted(surfaces, [(edges, 0.4, LINE_COLOUR)], evenly=True)
+    view = _view_axes()
+    triangles = numpy.concatenate([s[0] for s in surfaces])
+    places = numpy.array([worst_place(r) for r in result.regions if r.fitted is not None])
+    seen = _visible(places, triangles, view)
+    x, y = (places @ view[:, :2])[seen].T
+    axes.scatter(x, y, s=60, facecolors="none", edgecolors="black", linewidths=1.0, zorder=3)
+    _add_deviation_bar(drawing, tolerance, largest)
+    _finish(drawing, axes, path)
+
+
+def _add_deviation_bar(drawing, tolerance, largest):
+    from matplotlib import cm, colors
+
+    drawing.axes[0].set_position([0.02, 0.02, 0.84, 0.96])
+    steps = colors.ListedColormap([deviation_colour(k / 255) for k in range(256)])
+    steps.set_over(BEYOND_TOLERANCE)
+    scale = cm.ScalarMappable(colors.Normalize(0, 1), steps)
+    bar = drawing.colorbar(scale, cax=drawing.add_axes([0.88, 0.15, 0.02, 0.7]), extend="max")
+    bar.set_label(f"distance from the input / tolerance ({tolerance:.3g}); largest {largest:.2f}")
 
 
 def _save_tmeshes(items, path_of):
@@ -145,25 +178,10 @@ def _finish(drawing, axes, path):
 
 
 def _save(path, surfaces, lines, singularities=()):
-    """Paint triangles from back to front in a fixed oblique view, and what they do not hide of the lines and points."""
-    from matplotlib.collections import PolyCollection
-
-    triangles = numpy.concatenate([s[0] for s in surfaces])
-    colours = numpy.concatenate([s[1] for s in surfaces])
-    # Large triangles have no one depth to be sorted by.
-    triangles, colours = _divided(triangles, colours, _extent(triangles) / 60)
-    view = _view_axes(triangles)
-    flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
-    order = numpy.argsort(depth, kind="stable")
-    shaded = numpy.clip(colours * _shade(triangles, view)[:, None], 0, 1)
-    drawing, axes = _drawing()
-    axes.add_collection(
-        PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
-    )
-    for segments, *how in lines:
-        seen = _visible(segments.mean(axis=1), triangles, view)
-        _add_line(axes, (segments @ view[:, :2])[seen], *how)
+    """Paint triangles, and what they do not hide of the lines and points."""
+    drawing, axes = _painted(surfaces, lines)
     if singularities:
+        triangles, view = numpy.concatenate([s[0] for s in surfaces]), _view_axes()
         places = numpy.array([s.position for s in singularities])
         colours = numpy.array([point_colour(s.index) for s in singularities])
         seen = _visible(places, triangles, view)
@@ -172,7 +190,32 @@ def _save(path, surfaces, lines, singularities=()):
     _finish(drawing, axes, path)
 
 
-def _view_axes(triangles):
+def _painted(surfaces, lines, evenly=False):
+    """A drawing of triangles from back to front in a fixed oblique view, and of what they do not hide of the lines.
+
+    evenly: not shaded, so that the colours can be read by a scale
+    """
+    from matplotlib.collections import PolyCollection
+
+    triangles = numpy.concatenate([s[0] for s in surfaces])
+    colours = numpy.concatenate([s[1] for s in surfaces])
+    # Large triangles have no one depth to be sorted by.
+    triangles, colours = _divided(triangles, colours, _extent(triangles) / 60)
+    view = _view_axes()
+    flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
+    order = numpy.argsort(depth, kind="stable")
+    shaded = colours if evenly else numpy.clip(colours * _shade(triangles, view)[:, None], 0, 1)
+    drawing, axes = _drawing()
+    axes.add_collection(
+        PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
+    )
+    for segments, *how in lines:
+        seen = _visible(segments.mean(axis=1), triangles, view)
+        _add_line(axes, (segments @ view[:, :2])[seen], *how)
+    return drawing, axes
+
+
+def _view_axes():
     """Columns: right, up, towards the eye. The eye stands obliquely above."""
     towards = numpy.array([0.45, -0.72, 0.62])
     towards /= numpy.linalg.norm(towards)

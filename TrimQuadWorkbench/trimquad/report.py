@@ -1,6 +1,7 @@
 """report.json: one object about a conversion, built from the values of the stages."""
 import os
 
+from .deviation import face_deviations, worst_place
 from .histograms import histograms
 from .native import load
 from .tmesh import tmesh_counts
@@ -12,7 +13,7 @@ def report(result):
     """The object that report.json holds. Keys of stages that this version does not have are null."""
     triangles = sum(r.region.triangles for r in result.regions) or 1
     fitted = sum(r.fitted is not None for r in result.regions) or 1
-    regions = []
+    regions, deviations = [], face_deviations(result)
     for index, item in enumerate(result.regions):
         seconds = dict.fromkeys(STAGES)
         seconds.update({stage: round(value, 6) for stage, value in item.seconds.items()})
@@ -22,7 +23,7 @@ def report(result):
             seconds["fit"] = round(seconds["fit"] + result.seconds.get("trim", 0.0) / fitted, 6)
         if "write" in result.seconds:
             seconds["write"] = round(share * result.seconds["write"], 6)
-        regions.append(_region_report(result, index, item, seconds))
+        regions.append(_region_report(result, index, item, deviations[index], seconds))
     return {
         "input": {"path": result.source.path, "kind": result.source.kind, **result.shape_counts,
                   "repairs": result.repairs},
@@ -39,7 +40,7 @@ def report(result):
     }
 
 
-def _region_report(result, index, item, seconds):
+def _region_report(result, index, item, deviations, seconds):
     error = item.error
     return {
         "name": item.name,
@@ -64,7 +65,7 @@ def _region_report(result, index, item, seconds):
         "gridmap": item.grid and {"flipped": 0, **item.grid.counters},
         "quads": item.quads and item.quads.statistics,
         "histograms": item.quads and histograms(item.quads, item.edge_length),
-        "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item),
+        "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item, deviations),
         "seconds": seconds,
     }
 
@@ -87,7 +88,7 @@ def _singularities(item):
     }
 
 
-def _nurbs_report(result, index, item):
+def _nurbs_report(result, index, item, deviations):
     faces = [f for f in result.spline.faces if f["region"] == index]
     return {
         "faces": len(faces),
@@ -95,6 +96,10 @@ def _nurbs_report(result, index, item):
         "degree": result.options.degree,
         "max_deviation": item.fitted.max_deviation,
         "rms_deviation": item.fitted.rms_deviation,
+        "max_deviation_at": worst_place(item),
+        "face_deviations": [
+            {"face": f"Face{d.face}", "max": d.max, "rms": d.rms, "at": d.where} for d in deviations
+        ],
         "max_gap": max((f["edge_tolerance"] for f in faces), default=0.0),
         "tolerance": result.options.tolerance,
     }

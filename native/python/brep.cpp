@@ -1,7 +1,9 @@
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "bindings.h"
 #include "trimquad/brep/assemble.h"
+#include "trimquad/brep/deviation_map.h"
 #include "trimquad/brep/shape.h"
 #include "trimquad/brep/tessellate.h"
 
@@ -14,6 +16,29 @@ Model tessellateShape(const Shape& shape, double edgeLength, double tolerance, c
                       const Progress& progress) {
   return tessellate(shape, {.edgeLength = edgeLength, .tolerance = tolerance, .features = features},
                     progress);
+}
+
+py::list deviationMapsOf(const SplineModel& spline, const std::vector<const Region*>& regions, double chord,
+                         double size, int threads, const Progress& progress) {
+  std::vector<DeviationMap> maps;
+  {
+    py::gil_scoped_release release;
+    maps = deviationMaps(spline, regions, {chord, size, threads}, progress);
+  }
+  py::list result;
+  for (const DeviationMap& map : maps) {
+    py::array_t<double> points({py::ssize_t(map.points.size()), py::ssize_t(3)});
+    py::array_t<int> triangles({py::ssize_t(map.triangles.size()), py::ssize_t(3)});
+    auto p = points.mutable_unchecked<2>();
+    auto t = triangles.mutable_unchecked<2>();
+    for (std::size_t i = 0; i < map.points.size(); ++i)
+      for (int k = 0; k < 3; ++k) p(i, k) = map.points[i][k];
+    for (std::size_t i = 0; i < map.triangles.size(); ++i)
+      for (int k = 0; k < 3; ++k) t(i, k) = map.triangles[i][k];
+    result.append(
+        py::make_tuple(points, py::array_t<double>(map.distances.size(), map.distances.data()), triangles));
+  }
+  return result;
 }
 
 }  // namespace
@@ -43,6 +68,12 @@ void bindBrep(py::module_& m) {
   m.def("assemble", &assemble, py::arg("spline"), Released());
   m.def("face_faults", &faceFaults, py::arg("spline"), Released(),
         "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone");
+  m.def("face_order", &faceOrder, py::arg("spline"), Released(),
+        "by face of the assembled shape, its index among the spline's");
+  m.def("deviation_maps", &deviationMapsOf, py::arg("spline"), py::arg("regions"), py::kw_only(),
+        py::arg("chord"), py::arg("size"), py::arg("threads"), py::arg("progress"),
+        "By face of the spline: points (n, 3), distances from its region (n), triangles (m, 3). `chord` and "
+        "`size` bound the triangles' distances from the face and their sides.");
   m.def("shape_faults", &faults, py::arg("shape"), py::arg("crossings"), Released());
   m.def("write_step", &writeStep, py::arg("shape"), py::arg("path"), Released());
   m.def("write_brep", &writeBrep, py::arg("shape"), py::arg("path"), Released());

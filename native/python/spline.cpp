@@ -19,12 +19,20 @@ double edgeTolerance(const SplineModel& model, const SplineFace& face) {
   return largest;
 }
 
+py::list deviationsOf(const FittedSurface& fit) {
+  py::list charts;
+  for (const ChartDeviation& d : fit.deviations)
+    charts.append(py::make_tuple(d.max, d.rms, py::make_tuple(d.where.x(), d.where.y(), d.where.z())));
+  return charts;
+}
+
 }  // namespace
 
 void bindSpline(py::module_& m) {
   py::class_<FittedSurface>(m, "FittedSurface")
       .def_readonly("max_deviation", &FittedSurface::maxDeviation)
       .def_readonly("rms_deviation", &FittedSurface::rmsDeviation)
+      .def_property_readonly("deviations", &deviationsOf, "by chart: largest, rms, place of the largest")
       .def_readonly("rounds", &FittedSurface::rounds)
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")

@@ -159,6 +159,64 @@ def the_grid_map_is_hidden_until_it_is_asked_for_and_its_parts_can_be_switched()
     assert red[0] > red[2] and blue[2] > blue[0]
 
 
+def coloured_pixels(path):
+    """How many pixels of a picture are far from grey."""
+    image = QtGui.QImage(path)
+    colours = [image.pixelColor(x, y) for x in range(0, 800, 4) for y in range(0, 600, 4)]
+    return sum(max(c.red(), c.green(), c.blue()) - min(c.red(), c.green(), c.blue()) > 60 for c in colours)
+
+
+@test
+def faces_are_coloured_by_their_deviation_and_stay_selectable():
+    from trimquad.colours import deviation_colour
+
+    document, source = new_document(Part.makeCylinder(10, 20))
+    shell, quads = convert(document, source, count=200)
+    quads.ViewObject.Visibility = False
+    view, count = shell.ViewObject, len(shell.Shape.Faces)
+    assert count == len(shell.FaceDeviations) == 3
+    assert max(shell.FaceDeviations) == shell.Deviation.Value <= shell.AllowedDeviation
+    window = FreeCADGui.ActiveDocument.ActiveView
+    window.viewIsometric()
+    window.fitAll()
+    path = os.path.join(os.path.dirname(COUNTS_FILE), "deviation.png")
+    FreeCADGui.Selection.clearSelection()
+    spin(0.3)
+    window.saveImage(path + ".off.png", 800, 600, "White")
+    view.ColourByDeviation = True
+    spin(0.3)
+    window.saveImage(path, 800, 600, "White")
+    assert coloured_pixels(path) > coloured_pixels(path + ".off.png") + 1000
+
+    def shown():
+        return [tuple(round(x, 2) for x in c[:3]) for c in view.DiffuseColor]
+
+    def expected():
+        return [tuple(round(x, 2) for x in deviation_colour(d / shell.AllowedDeviation)) for d in shell.FaceDeviations]
+
+    assert shown() == expected() and len(set(expected())) > 1
+    select(shell, "Face2")
+    assert FreeCADGui.Selection.getSelectionEx()[0].SubObjects[0].isSame(shell.Shape.Faces[1])
+    view.ShapeColor = (1.0, 0.0, 0.0)
+    assert shown() == expected()
+    before = list(shell.FaceDeviations)
+    shell.RelativeTolerance = 1e-4
+    document.recompute()
+    assert list(shell.FaceDeviations) != before
+    assert shown() == expected()
+    view.ColourByDeviation = False
+    assert set(shown()) == {(1.0, 0.0, 0.0)}
+    view.ColourByDeviation = True
+    file = os.path.join(tempfile.mkdtemp(), "part.FCStd")
+    document.saveAs(file)
+    FreeCAD.closeDocument(document.Name)
+    document = FreeCAD.openDocument(file)
+    spin(0.3)
+    shell = document.SplineShell
+    view = shell.ViewObject
+    assert view.ColourByDeviation and shown() == expected()
+
+
 @test
 def recomputing_follows_the_source():
     document, source = new_document(wavy_face())

@@ -148,7 +148,7 @@ def test_pictures_and_a_document_are_written_when_asked_for(sheet, tmp_path):
     import FreeCAD
 
     result = trimquad.convert(sheet, trimquad.Options(quads=50, write=["pictures", "fcstd"]))
-    pictures = ["histograms.png", "map.png", "nurbs.png", "quads.png", "tmesh.png", "tmesh_unfolded.png"]
+    pictures = ["histograms.png", "map.png", "nurbs-deviation.png", "nurbs.png", "quads.png", "tmesh.png", "tmesh_unfolded.png"]
     assert result.write(str(tmp_path)) == [*pictures, "trimquad.FCStd"]
     document = FreeCAD.openDocument(str(tmp_path / "trimquad.FCStd"))
     try:

@@ -1,4 +1,5 @@
 """SplineShell: an object's faces rebuilt as trimmed B-spline faces."""
+from ..deviation import face_deviations
 from ..error import Error
 from ..options import Options
 from . import conversion
@@ -23,9 +24,11 @@ PROPERTIES = (
     ("App::PropertyFloat", "RelativeTolerance", "B-splines", "Largest deviation as a fraction of the diagonal", 1e-3),
     ("App::PropertyInteger", "Degree", "B-splines", "Degree of the B-splines, 2 to 5", 3),
     ("App::PropertyLength", "Deviation", "Result", "Largest deviation that was measured", 0.0),
+    ("App::PropertyFloatList", "FaceDeviations", "Result", "Each face's largest deviation, in the order of the faces", []),
+    ("App::PropertyFloat", "AllowedDeviation", "Result", "The tolerance that the faces were made to keep", 0.0),
     ("App::PropertyStringList", "FailedRegions", "Result", "Regions that could not be converted, and why", []),
 )
-RESULTS = ("Deviation", "FailedRegions")
+RESULTS = ("Deviation", "FaceDeviations", "AllowedDeviation", "FailedRegions")
 
 
 class SplineShell:
@@ -64,6 +67,9 @@ class SplineShell:
         if shape is None:
             raise RuntimeError(obj.FailedRegions[0])
         obj.Shape = shape
+        obj.AllowedDeviation = result.options.tolerance
+        faces = [face for region in face_deviations(result) for face in region]
+        obj.FaceDeviations = [face.max for face in sorted(faces)]
         obj.Deviation = max(r.fitted.max_deviation for r in result.regions if r.fitted is not None)
 
     def dumps(self):

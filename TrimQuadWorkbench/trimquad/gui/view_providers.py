@@ -2,7 +2,7 @@
 import FreeCADGui
 from pivy import coin
 
-from ..colours import checker_pixels, point_colour
+from ..colours import checker_pixels, deviation_colour, point_colour
 from ..features.quad_mesh import polygons_of
 from . import icon_path
 
@@ -34,8 +34,49 @@ class _View:
 
 
 class SplineShellView(_View):
+    """Can colour each face by its largest deviation; the faces stay faces, to be selected and measured."""
+
+    def __init__(self, vobj):
+        self._ensure_properties(vobj)
+        super().__init__(vobj)
+
+    def _ensure_properties(self, vobj):
+        if not hasattr(vobj, "ColourByDeviation"):
+            vobj.addProperty(
+                "App::PropertyBool", "ColourByDeviation", "Deviation",
+                "Colour each face by its largest deviation: from blue, none, to yellow, all of the tolerance; red beyond",
+            )
+
     def attach(self, vobj):
         self.Object = vobj.Object
+        self._ensure_properties(vobj)
+
+    def updateData(self, obj, name):
+        vobj = obj.ViewObject
+        if name in ("FaceDeviations", "AllowedDeviation") and getattr(vobj, "ColourByDeviation", False):
+            self._colour(vobj)
+
+    def onChanged(self, vobj, name):
+        if name == "ColourByDeviation":
+            if vobj.ColourByDeviation:
+                self._colour(vobj)
+            else:
+                vobj.DiffuseColor = [vobj.ShapeColor[:3]]
+        elif name == "DiffuseColor" and getattr(vobj, "ColourByDeviation", False):
+            self._colour(vobj)  # FreeCAD gave all faces the shape's new colour
+
+    def _colour(self, vobj):
+        colours = self._deviation_colours(vobj.Object)
+        if colours and not _alike(colours, vobj.DiffuseColor):
+            vobj.DiffuseColor = colours
+
+    @staticmethod
+    def _deviation_colours(shell):
+        """A colour for each face; none while the deviations are not those of the shape's faces."""
+        deviations, allowed = getattr(shell, "FaceDeviations", []), getattr(shell, "AllowedDeviation", 0.0)
+        if allowed <= 0 or len(deviations) != len(shell.Shape.Faces):
+            return []
+        return [deviation_colour(d / allowed) for d in deviations]
 
     def getIcon(self):
         return icon_path("TrimQuad_SplineShell")
@@ -61,6 +102,13 @@ class SplineShellView(_View):
     def doubleClicked(self, vobj):
         vobj.Document.setEdit(vobj.Object.Name)
         return True
+
+
+def _alike(colours, others):
+    """Whether they differ by no more than the 3D view's colours are rounded."""
+    return len(colours) == len(others) and all(
+        abs(x - y) < 0.005 for colour, other in zip(colours, others) for x, y in zip(colour, other)
+    )
 
 
 class QuadMeshView(_View):

@@ -11,6 +11,8 @@
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColgp_Array1OfPnt2d.hxx>
 #include <TColgp_Array2OfPnt.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
@@ -178,6 +180,25 @@ class Assembly {
 Shape assemble(const SplineModel& model) {
   return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape",
                  [&] { return Shape(Assembly(model).shape()); });
+}
+
+std::vector<Shape> assembledFaces(const SplineModel& model) {
+  return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
+    const Assembly assembly(model);
+    return std::vector<Shape>(assembly.faces().begin(), assembly.faces().end());
+  });
+}
+
+std::vector<int> faceOrder(const SplineModel& model) {
+  return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
+    const Assembly assembly(model);
+    TopTools_IndexedMapOfShape counted;
+    TopExp::MapShapes(assembly.shape(), TopAbs_FACE, counted);
+    std::vector<int> order(counted.Extent());
+    for (int f = 0; f < int(assembly.faces().size()); ++f)
+      if (const int place = counted.FindIndex(assembly.faces()[f])) order[place - 1] = f;
+    return order;
+  });
 }
 
 std::vector<std::vector<std::string>> faceFaults(const SplineModel& model) {

@@ -14,6 +14,12 @@ namespace trimquad {
 /// "write") where OpenCASCADE cannot hold a curve or surface.
 Shape assemble(const SplineModel& model);
 
+/// The faces of `assemble`'s shape in the model's order. They share their edges.
+std::vector<Shape> assembledFaces(const SplineModel& model);
+
+/// By face of `assemble`'s shape, as OpenCASCADE counts them (Face1, Face2, ..): its index in the model.
+std::vector<int> faceOrder(const SplineModel& model);
+
 /// What is wrong with the shape, one line each ("Edge7: InvalidCurveOnSurface"), empty where nothing is:
 /// OpenCASCADE's validity check, and its check of arguments for boolean operations (self-interference, small
 /// edges, continuity, curves on surfaces), as FreeCAD's "Check geometry" runs them.

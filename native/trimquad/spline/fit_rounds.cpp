@@ -258,12 +258,39 @@ bool FitRounds::startNearby(std::vector<SurfaceSample>& control, double toleranc
   return true;
 }
 
+/// Each sample counts for the chart where its foot lies. The largest of them is the region's deviation.
+std::vector<ChartDeviation> FitRounds::deviationsByChart(const std::vector<SurfaceSample>& control,
+                                                         const std::vector<FitPlace>& feet) const {
+  std::vector<ChartDeviation> result(result_.surfaces.size());
+  std::vector<int> counts(result.size(), 0);
+  const auto take = [&](const std::vector<SurfaceSample>& samples, const std::vector<FitPlace>& places,
+                        bool independent) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      ChartDeviation& d = result[places[i].chart];
+      const double distance = std::abs(samples[i].distance);
+      if (distance >= d.max) {
+        d.max = distance;
+        d.where = samples[i].point;
+      }
+      if (!independent) continue;
+      d.rms += distance * distance;
+      ++counts[places[i].chart];
+    }
+  };
+  take(control, feet, true);
+  take(samples_, feet_, false);
+  for (std::size_t c = 0; c < result.size(); ++c)
+    result[c].rms = std::sqrt(result[c].rms / std::max(1, counts[c]));
+  return result;
+}
+
 /// Whether other samples keep the tolerance as well.
 bool FitRounds::verified(double tolerance) {
   auto control = makeSamples(true);
   std::vector<FitPlace> feet;
   Deviation found = measure(control, feet);
   if (startNearby(control, tolerance)) found = measure(control, feet);
+  result_.deviations = deviationsByChart(control, feet);
   if (policy_.failsAtFeet) moveTo(feet, control);
   result_.maxDeviation = std::max(found.max, deviation_.max);
   result_.rmsDeviation = found.rms;

@@ -100,6 +100,8 @@ class FitRounds {
   void keepIfEnough();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
   bool verified(double tolerance);
+  std::vector<ChartDeviation> deviationsByChart(const std::vector<SurfaceSample>& control,
+                                                const std::vector<FitPlace>& feet) const;
   double threshold(double largest) const;
   bool stalled() const { return best_ > 0.5 * atRefinement_; }
   bool correctionPays() const;

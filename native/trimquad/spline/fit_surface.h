@@ -20,6 +20,13 @@ struct FitOptions {
   int threads = 1;  ///< the result does not depend on it
 };
 
+/// How far a part of a region lies from its surface.
+struct ChartDeviation {
+  double max = 0;                                   ///< over independent samples and those of the fit
+  double rms = 0;                                   ///< over independent samples
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< the region's point that lies farthest away
+};
+
 /// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else
 /// one for each chart of its layout.
 struct FittedSurface {
@@ -28,6 +35,7 @@ struct FittedSurface {
   std::optional<Layout> layout;  ///< where there are several charts; then `chart` and `surface` are empty
   std::vector<SplineSurface> surfaces;        ///< by chart of the layout
   double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
+  std::vector<ChartDeviation> deviations;     ///< by chart, one where there is a single surface
   int rounds = 0;
 };
 
