@@ -138,9 +138,13 @@ struct Draft {
     return {mesh, map.seams, constraints};
   }
 
+  /// Whether a convex embedding can serve as a start: it never fails, so that fewer others are worth while.
+  bool hasConvexStart() const { return (map.seams.outerLoop || map.seams.tube) && field.aligned.empty(); }
+
   MapProblem problem(const SeamBasis& basis) const {
-    return {mesh,      map.seams, map.target, startsOf({&map.target, &map.conformalTarget}),
-            map.index, basis,     "seamless"};
+    auto starts = startsOf({&map.target, &map.conformalTarget});
+    if (hasConvexStart()) starts.resize(2);
+    return {mesh, map.seams, map.target, std::move(starts), map.index, basis, "seamless"};
   }
 };
 
@@ -221,7 +225,7 @@ SeamlessMap seamlessMap(const Region& region, const CrossField& field, double ed
   MapCounters counters;
   const auto maps = untangledMaps(draft.problem(basis), std::nullopt, effort, counters, budget, progress);
   std::optional<Eigen::VectorXd> z = maps.injective;
-  if (!z && effort == Effort::Full)
+  if (!z && effort == Effort::Full && !draft.hasConvexStart())
     if (auto found = locallyRefined(region, draft, fewestWrong(draft, basis, maps), edgeLength, counters,
                                     budget, progress)) {
       draft = std::move(found->first);

@@ -243,16 +243,16 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
 Eigen::VectorXd stubbornMap(const MapProblem& problem, const UntangledMaps& maps, Effort effort,
                             MapCounters& counters, StepBudget& budget, const Progress& progress) {
   const auto& [mesh, seams, target, starts, index, basis, stage] = problem;
-  for (size_t k = 0; k < maps.reached.size() && !budget.spent(); ++k)
-    if (const auto stiffened =
-            stiffenedMap(mesh, starts[k], index, basis, maps.reached[k], counters, budget, progress))
-      return *stiffened;
   const MapEnergy energy(mesh, target, basis);
   if (effort == Effort::Full)
     if (const auto grown = grownMap(energy, mesh, seams, target, basis, poissonMap(mesh, target, basis))) {
       counters.convexStart = true;
       return *grown;
     }
+  for (size_t k = 0; k < maps.reached.size() && !budget.spent(); ++k)
+    if (const auto stiffened =
+            stiffenedMap(mesh, starts[k], index, basis, maps.reached[k], counters, budget, progress))
+      return *stiffened;
   throwStillFlipped(problem, energy, energy.coordinates(maps.reached.back()));
 }
 

@@ -62,7 +62,7 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
                             Effort effort, MapCounters& counters, StepBudget& budget,
                             const Progress& progress);
 
-/// The last rungs: stiffening, and a map grown from a convex embedding, on a region without singularities.
+/// The last rungs: a map grown from a convex embedding, on a region without singularities, and stiffening.
 /// Throws Error(Stage) where they fail as well.
 Eigen::VectorXd stubbornMap(const MapProblem& problem, const UntangledMaps& maps, Effort effort,
                             MapCounters& counters, StepBudget& budget, const Progress& progress);
