@@ -73,15 +73,8 @@ void bindSeamless(py::module_& m) {
          std::optional<FieldGuidance> guidance) {
         const RefinedMesh& refined = *seed.map.refined;
         Region region = refinedRegion(bridged, model.curves, refined);
-        if (guidance) {
-          const FieldGuidance all = refinedGuidance(refined, overBridges(*guidance, bridged));
-          guidance = FieldGuidance{};
-          for (std::size_t t = 0; t < all.direction.size(); ++t)
-            if (region.bridge.empty() || !region.bridge[t]) {
-              guidance->direction.push_back(all.direction[t]);
-              guidance->weight.push_back(all.weight[t]);
-            }
-        }
+        if (guidance)
+          guidance = offBridges(refinedGuidance(refined, overBridges(*guidance, bridged)), region);
         model.regions.at(std::size_t(index)) = withoutBridges(region);
         return std::make_tuple(std::move(region), std::move(guidance));
       },

@@ -18,4 +18,16 @@ FieldGuidance overBridges(const FieldGuidance& guidance, const Region& region) {
   return result;
 }
 
+FieldGuidance offBridges(const FieldGuidance& guidance, const Region& region) {
+  if (region.bridge.empty()) return guidance;
+  TRIMQUAD_ASSERT(guidance.weight.size() == region.bridge.size());
+  FieldGuidance result;
+  for (std::size_t f = 0; f < region.bridge.size(); ++f)
+    if (!region.bridge[f]) {
+      result.direction.push_back(guidance.direction[f]);
+      result.weight.push_back(guidance.weight[f]);
+    }
+  return result;
+}
+
 }  // namespace trimquad

@@ -21,8 +21,6 @@ constexpr double kTangentGivesWay = 0.1;
 /// Knots at these distances from singularities, where the surfaces bend from one sector's shape to the
 /// grid's.
 constexpr double kKnotsAround[] = {1, 2};
-/// How far borders go on beyond the boundary, quads.
-constexpr double kGoesOn = 0.5;
 constexpr double kOnLine = 1e-9;  ///< quads
 
 /// A border as one of its charts sees it.
@@ -122,7 +120,8 @@ class LayoutFit : public FitRounds {
           } else if (const double out = (s > 0 ? 1 : -1) * side.along[axis]; goesOnBeyond(c, side, s)) {
             // Across a hole both stretches of the line go their own ways: they need not fit together there.
             const double end = (side.start + s * side.along)[axis];
-            const double first = out > 0 ? std::ceil(end + kGoesOn) : std::floor(end - kGoesOn);
+            const double first = out > 0 ? std::ceil(end + JoinedSpace::kBeyondBoundary)
+                                         : std::floor(end - JoinedSpace::kBeyondBoundary);
             for (int k = 0; k < degree; ++k)
               if (const double at = first + k * out; at > low && at < high) fixed.insert(at);
           }
@@ -197,7 +196,9 @@ class LayoutFit : public FitRounds {
         const double part = before - depth > kOnLine ? before / (before - depth) : 1;
         const double s =
             (start.parameter + part * (at.parameter - start.parameter) - side.start).dot(side.along);
-        const double low = side.endsInside[0] ? 0 : -0.5, high = side.length + (side.endsInside[1] ? 0 : 0.5);
+        constexpr double kBeyond = JoinedSpace::kBeyondBoundary;
+        const double low = side.endsInside[0] ? 0 : -kBeyond,
+                     high = side.length + (side.endsInside[1] ? 0 : kBeyond);
         if (s < low - kOnLine || s > high + kOnLine) continue;
         // A crease's other side is another sheet.
         if (side.border->feature) {

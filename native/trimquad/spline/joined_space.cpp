@@ -26,8 +26,7 @@ constexpr double kTangentRadius = 1;
 constexpr int kFewestForTangent = 8;
 /// Borders that leave a singularity under a smaller angle are spread evenly, radians.
 constexpr double kSmallestAngle = 0.3;
-constexpr double kBeyondBoundary = 0.5;  ///< quads
-constexpr double kSame = 1e-9;           ///< quads
+constexpr double kSame = 1e-9;  ///< quads
 
 using Terms = std::vector<std::pair<int, double>>;
 

@@ -13,6 +13,10 @@ namespace trimquad {
 /// Splines over all charts of a layout, one tensor-product space each, that agree along the borders.
 class JoinedSpace {
  public:
+  /// How far borders go on beyond the surface's boundary, for trims that leave the region, quads; to the next
+  /// knot from there.
+  static constexpr double kBeyondBoundary = 0.5;
+
   explicit JoinedSpace(const Layout& layout) : layout_(layout) {}
 
   std::vector<SplineSpace> charts;  ///< by chart of the layout
@@ -37,7 +41,7 @@ class JoinedSpace {
   /// it become linearly dependent, with coefficients from the tangents: exactly in the singularity and by
   /// weighted least squares beyond. The conditions hold up to rounding (multipliers).
   ///
-  /// Beyond the surface's boundary borders go on for half a quad, for trims that leave the region.
+  /// Beyond the surface's boundary borders go on by kBeyondBoundary.
   /// \param data by chart. Empty where data and fairness do not determine the surfaces.
   std::optional<std::vector<SplineSurface>> leastSquares(const std::vector<std::vector<Datum>>& data,
                                                          const Fairness& fairness,
