@@ -26,7 +26,6 @@ void CellGraph::joinPieces() {
   }
 }
 
-/// From the chart of the triangle across to the chart of the triangle that has the halfedge.
 Transition CellGraph::acrossTriangles(int halfedge) const {
   const auto across = overlay_.halfedges[halfedge ^ 1].meshHalfedge;
   return across.is_valid() ? map_.transition(across) : Transition{};

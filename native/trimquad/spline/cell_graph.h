@@ -29,6 +29,9 @@ class CellGraph {
   int cellAcross(int halfedge) const { return cellAt(halfedge ^ 1); }
   /// From the plane of the cell across a side to the plane of the cell that has the side.
   Transition fromAcross(int halfedge) const;
+  /// From the chart of the triangle across a halfedge of the overlay to the chart of the triangle that has
+  /// it.
+  Transition acrossTriangles(int halfedge) const;
   /// Whether the side lies on an aligned edge inside the surface.
   bool isFeature(int halfedge) const;
 
@@ -48,7 +51,6 @@ class CellGraph {
  private:
   void joinPieces();
   void unrollCells();
-  Transition acrossTriangles(int halfedge) const;
 
   const Parametrization& map_;
   GridOverlay overlay_;

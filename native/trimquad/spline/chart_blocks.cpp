@@ -7,6 +7,7 @@
 #include <set>
 
 #include "trimquad/base/error.h"
+#include "trimquad/spline/hole_lines.h"
 
 namespace trimquad {
 namespace {
@@ -31,7 +32,7 @@ class Cuts {
 
   void addSeparatrices(const Progress& progress) {
     const auto& overlay = graph_.overlay();
-    std::vector<int> traces;
+    std::vector<int> traces = linesFromHoles(graph_);
     for (int h = 0; h < int(overlay.halfedges.size()); ++h) {
       const auto& edge = overlay.edges[h >> 1];
       if (edge.grid && !edge.border && isSingular(overlay.halfedges[h].origin)) traces.push_back(h);

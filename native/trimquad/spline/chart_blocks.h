@@ -18,7 +18,8 @@ struct ChartPartition {
   }
 };
 
-/// Charts between straight cuts: the separatrices of all singularities, grown at the same speed, each until
+/// Charts between straight cuts: the separatrices of all singularities and of holes around which the grid
+/// does not close (linesFromHoles), grown at the same speed, each until
 /// it meets another cut or the boundary (a motorcycle graph); the aligned edges inside the surface; and more
 /// grid lines where what they leave does not lie in the plane one to one.
 ChartPartition blocks(const CellGraph& graph, const Progress& progress);
