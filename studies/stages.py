@@ -28,9 +28,11 @@ class Mapped:
         self.model = self.fresh_model()
         if len(self.model.regions) != 1:
             raise Error("input", "read", f"{path}: {len(self.model.regions)} components; one is wanted")
-        self.region = self.model.regions[0]
-        seed = load().seed(self.region, "curvature", None, edge_length, self.progress)
+        seed = load().seed(self.model.regions[0], "curvature", None, None, edge_length, self.progress)
         self.field, self.map = seed.field, seed.map
+        if seed.refined:
+            load().place_refined(self.model, 0, self.model.regions[0], seed, None)
+        self.region = self.model.regions[0]
 
     def fresh_model(self):
         native = load()
@@ -48,7 +50,7 @@ class Mapped:
 
     def direct(self, tmesh, quantization):
         """The grid map by the direct route. Raises Error(stage) where it has none."""
-        return load().grid_map(self.map, tmesh, quantization, self.progress)
+        return load().grid_map(self.region, self.map, tmesh, quantization, False, self.progress)
 
     def reembedded(self, tmesh, quantization):
         """(grid map by the constructive route, its region)."""
@@ -61,7 +63,7 @@ class Mapped:
 
     def optimized(self, model, embedded):
         """The grid map of an embedded T-mesh; the model's region gets the refined mesh."""
-        return load().embedded_grid_map(model, 0, self.map, embedded, self.progress)[0]
+        return load().embedded_grid_map(model, 0, self.region, self.map, embedded, self.progress)[0]
 
     def grid_map(self, tmesh, quantization):
         """(grid map, its region): by the direct route, else by the constructive one."""

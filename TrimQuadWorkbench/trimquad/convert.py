@@ -308,7 +308,8 @@ def _grid_map(item, index, result, run):
     route = result.options.route
     if route != "reembed":
         try:
-            item.grid = run("optimize", native.grid_map, item.bridged, item.seamless, item.tmesh, item.quantization)
+            item.grid = run("optimize", native.grid_map, item.bridged, item.seamless, item.tmesh, item.quantization,
+                            route == "direct")
             item.embedding = {"route": "direct", "inserted_vertices": 0, "collapses": 0, "splits": 0}
             return
         except Error as error:

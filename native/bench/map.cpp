@@ -64,7 +64,7 @@ void optimize(benchmark::State& state) {
       seamlessMap(region, fieldOf(region), edgeLengthOf(region), Effort::Full, Progress());
   const TMesh tmesh = partition(map, Progress());
   const Quantization quantization = quantize(tmesh, {}, Progress());
-  for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, tmesh, quantization, Progress()));
+  for (auto _ : state) benchmark::DoNotOptimize(gridMap(map, tmesh, quantization, true, Progress()));
   state.counters["triangles"] = double(region.mesh.n_faces());
   state.SetComplexityN(std::int64_t(region.mesh.n_faces()));
 }

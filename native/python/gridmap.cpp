@@ -60,11 +60,12 @@ void bindGridMap(py::module_& m) {
   m.def(
       "grid_map",
       [](const Region& bridged, const SeamlessMap& seamless, const TMesh& tmesh,
-         const Quantization& quantization, const Progress& progress) {
-        return onSurface(gridMap(seamless, tmesh, quantization, progress), bridged);
+         const Quantization& quantization, bool thorough, const Progress& progress) {
+        return onSurface(gridMap(seamless, tmesh, quantization, thorough, progress), bridged);
       },
-      py::arg("bridged"), py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"), py::arg("progress"),
-      Released(), "`bridged` is the region that the seamless map is of; what bridges its holes is left out.");
+      py::arg("bridged"), py::arg("seamless"), py::arg("tmesh"), py::arg("quantization"), py::arg("thorough"),
+      py::arg("progress"), Released(),
+      "`bridged` is the region that the seamless map is of; what bridges its holes is left out.");
 }
 
 }  // namespace trimquad

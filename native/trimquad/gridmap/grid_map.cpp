@@ -11,6 +11,9 @@
 namespace trimquad {
 namespace {
 
+/// Share of the budget of Newton steps, where the constructive route follows.
+constexpr double kBriefly = 1.0 / 16;
+
 /// The images of the triangles: the map itself as a target.
 MapTarget imageOf(const Parametrization& map) {
   MapTarget image(map.mesh.n_faces());
@@ -56,7 +59,7 @@ BranchTranslation wholePeriod(const SeamlessMap& map) {
 }  // namespace
 
 GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
-                const Progress& progress) {
+                bool thorough, const Progress& progress) {
   GridMap map;
   const bool isFree = seamless.aligned.empty() && seamless.featurePoints.empty();
   if (seamless.seams.rotation.empty() && isFree) {
@@ -83,7 +86,8 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
                            seamless.target, startsOf({&image, &seamless.target, &seamless.conformalTarget}),
                            seamless.index,  basis,
                            "optimize"};
-  const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis), map.counters, progress);
+  const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis),
+                                     StepBudget(thorough ? 1 : kBriefly), map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   map.aligned = seamless.aligned;
   map.featurePoints = seamless.featurePoints;

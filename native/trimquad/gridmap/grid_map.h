@@ -17,7 +17,9 @@ struct GridMap : Parametrization {
 /// route: the quantization fixes translations, singular vertices, aligned lines and feature points to whole
 /// quads, and the map is solved for again with these fixed. Guarantees: every triangle has positive area, all
 /// conditions of a grid map hold exactly. Throws Error(Stage, "optimize") where no valid map was found.
+/// \param thorough  search as long as for a seamless map; otherwise no longer than the constructive route
+/// takes, which ends at the same map
 GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,
-                const Progress& progress);
+                bool thorough, const Progress& progress);
 
 }  // namespace trimquad

@@ -4,6 +4,7 @@
 #include "trimquad/gridmap/integer_charts.h"
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
+#include "trimquad/seamless/winding.h"
 
 namespace trimquad {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr int kMostSteps = 300;
 constexpr double kConverged =
     1e-3;  ///< relative decrease of the energy in a step, at which optimisation ends
+constexpr double kRepair = 1.0 / 16;  ///< share of the budget of Newton steps for what doubles turn over
 
 Eigen::VectorXd coordinatesOf(const IntegerCharts& charts, const SeamBasis& basis) {
   Eigen::VectorXd x(basis.basis().variableCount());
@@ -28,6 +30,20 @@ Eigen::VectorXd coordinatesOf(const IntegerCharts& charts, const SeamBasis& basi
   return x;
 }
 
+/// Whether z is locally injective in doubles, where need be after untangling: the patches' triangles can be
+/// so thin that the exact map has them upright, but its doubles do not.
+bool startsInjective(const IntegerCharts& charts, const SeamBasis& basis, const MapEnergy& energy,
+                     Eigen::VectorXd& z, MapCounters& counters, const Progress& progress) {
+  counters.flippedBefore = energy.flipped(energy.coordinates(z));
+  if (counters.flippedBefore == 0) return true;
+  StepBudget budget(kRepair);
+  untangle(energy, basis, z, counters.untangleIterations, budget, progress);
+  const Eigen::VectorXd x = energy.coordinates(z);
+  std::vector<int> index = coneQuarters(charts.map);
+  for (int& i : index) i = 4 - i;
+  return energy.flipped(x) == 0 && wrongCones(charts.map.mesh, index, basis, x).empty();
+}
+
 }  // namespace
 
 GridMap optimizedPatchMap(const SeamlessMap& seamless, const PatchMap& patches, const Progress& progress) {
@@ -35,8 +51,13 @@ GridMap optimizedPatchMap(const SeamlessMap& seamless, const PatchMap& patches, 
   const SeamBasis basis(charts.map.mesh, charts.seams, charts.constraints);
   const MapEnergy energy(charts.map.mesh, charts.target, basis);
   Eigen::VectorXd z = basis.basis().restrict(coordinatesOf(charts, basis));
-  TRIMQUAD_ASSERT(energy.flipped(energy.coordinates(z)) == 0);
   GridMap result;
+  if (!startsInjective(charts, basis, energy, z, result.counters, progress)) {
+    // The map is one all the same, only with more distortion than it needs.
+    static_cast<Parametrization&>(result) = charts.map;
+    verify(result, true);
+    return result;
+  }
   result.counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
   SparseSolver solver("optimize");
   for (int i = 0; i < kMostSteps; ++i) {

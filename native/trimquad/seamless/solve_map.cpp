@@ -273,8 +273,7 @@ void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counte
 }
 
 Eigen::VectorXd solveMap(const MapProblem& problem, const std::optional<Eigen::VectorXd>& nearby,
-                         MapCounters& counters, const Progress& progress) {
-  StepBudget budget;
+                         StepBudget budget, MapCounters& counters, const Progress& progress) {
   const auto maps = untangledMaps(problem, nearby, Effort::Full, counters, budget, progress);
   Eigen::VectorXd z =
       maps.injective ? *maps.injective : stubbornMap(problem, maps, Effort::Full, counters, budget, progress);

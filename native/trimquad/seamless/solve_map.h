@@ -73,7 +73,7 @@ void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counte
 
 /// The locally injective map nearest to the target over the basis, z, by all rungs.
 Eigen::VectorXd solveMap(const MapProblem& problem, const std::optional<Eigen::VectorXd>& nearby,
-                         MapCounters& counters, const Progress& progress);
+                         StepBudget budget, MapCounters& counters, const Progress& progress);
 
 /// The map of a plane region without seams, z, kept one to one by a scaffold: triangles that fill the holes
 /// and surround the outer loop must not collapse either while the map grows from a convex embedding. Other

@@ -7,7 +7,8 @@ namespace trimquad {
 /// depend on the machine.
 class StepBudget {
  public:
-  StepBudget() = default;
+  /// \param share  of what is spent at most on a map for which there is no other way
+  explicit StepBudget(double share = 1) : left_(share * kWork) {}
 
   bool spent() const { return left_ <= 0; }
   void spend(double work) { left_ -= work; }
@@ -22,7 +23,7 @@ class StepBudget {
 
  private:
   static constexpr double kWork = 4e11;  // multiply-adds, about a minute
-  double left_ = kWork;
+  double left_;
 };
 
 }  // namespace trimquad

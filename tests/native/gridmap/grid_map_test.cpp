@@ -22,7 +22,7 @@ GridMap mapOf(const Region& r, double edgeLength) {
   const CrossField field = fieldOf(r);
   const SeamlessMap seamless = seamlessMap(r, field, edgeLength, Effort::Full, Progress());
   const TMesh tmesh = partition(seamless, Progress());
-  return gridMap(seamless, tmesh, quantize(tmesh, {}, Progress()), Progress());
+  return gridMap(seamless, tmesh, quantize(tmesh, {}, Progress()), true, Progress());
 }
 
 /// Translation of the seam that a tube's map has, in quads (as long as it has one).
