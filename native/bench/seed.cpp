@@ -128,7 +128,8 @@ void untangling(benchmark::State& state) {
     Eigen::VectorXd z = start;
     steps = 0;
     StepBudget budget;
-    untangle(*p.energy, *p.basis, z, steps, budget, Progress());
+    SparseSolver solver("untangle");
+    untangle(*p.energy, *p.basis, z, steps, solver, budget, Progress());
     if (p.energy->flipped(p.energy->coordinates(z)) > 0) {
       state.SkipWithError("triangles stay turned over");
       break;

@@ -33,11 +33,12 @@ Eigen::VectorXd coordinatesOf(const IntegerCharts& charts, const SeamBasis& basi
 /// Whether z is locally injective in doubles, where need be after untangling: the patches' triangles can be
 /// so thin that the exact map has them upright, but its doubles do not.
 bool startsInjective(const IntegerCharts& charts, const SeamBasis& basis, const MapEnergy& energy,
-                     Eigen::VectorXd& z, MapCounters& counters, const Progress& progress) {
+                     Eigen::VectorXd& z, SparseSolver& solver, MapCounters& counters,
+                     const Progress& progress) {
   counters.flippedBefore = energy.flipped(energy.coordinates(z));
   if (counters.flippedBefore == 0) return true;
   StepBudget budget(kRepair);
-  untangle(energy, basis, z, counters.untangleIterations, budget, progress);
+  untangle(energy, basis, z, counters.untangleIterations, solver, budget, progress);
   const Eigen::VectorXd x = energy.coordinates(z);
   std::vector<int> index = coneQuarters(charts.map);
   for (int& i : index) i = 4 - i;
@@ -52,14 +53,14 @@ GridMap optimizedPatchMap(const SeamlessMap& seamless, const PatchMap& patches, 
   const MapEnergy energy(charts.map.mesh, charts.target, basis);
   Eigen::VectorXd z = basis.basis().restrict(coordinatesOf(charts, basis));
   GridMap result;
-  if (!startsInjective(charts, basis, energy, z, result.counters, progress)) {
+  SparseSolver solver("optimize");
+  if (!startsInjective(charts, basis, energy, z, solver, result.counters, progress)) {
     // The map is one all the same, only with more distortion than it needs.
     static_cast<Parametrization&>(result) = charts.map;
     verify(result, true);
     return result;
   }
   result.counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
-  SparseSolver solver("optimize");
   for (int i = 0; i < kMostSteps; ++i) {
     const double decrease = newtonStep(energy, basis, symmetricDirichlet, kFollow, true, solver, z);
     ++result.counters.iterations;

@@ -20,30 +20,29 @@ MapTarget imageOf(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::
 
 }  // namespace
 
-std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const MapTarget& target,
+std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEnergy energy,
                                                  const std::vector<int>& index, const SeamBasis& basis,
                                                  const Eigen::VectorXd& x, int& iterations,
-                                                 StepBudget& budget, const Progress& progress) {
-  MapEnergy energy(mesh, target, basis);
+                                                 SparseSolver& solver, StepBudget& budget,
+                                                 const Progress& progress) {
+  MapEnergy ahead = energy;
   Eigen::VectorXd z = basis.basis().restrict(x);
   // What the constants of x are beyond those of the basis; goes to 0.
   Eigen::VectorXd rest = x - energy.coordinates(z);
   energy.shift(rest);
-  SparseSolver solver("optimize");
   constexpr double kShortest = 1.0 / 64;
   double left = 1;
   for (double step = 0.5; step >= kShortest && !budget.spent();) {
-    const MapTarget image = imageOf(mesh, basis, energy.coordinates(z));
-    MapEnergy ahead(mesh, image, basis);
+    ahead.aim(imageOf(mesh, basis, energy.coordinates(z)));
     const double length = std::min(step, left);
     const Eigen::VectorXd shift = (left - length) * rest;
     ahead.shift(shift);
-    Eigen::VectorXd next = leastSquares(ahead, basis);
+    Eigen::VectorXd next = leastSquares(ahead, basis, solver);
     const auto injective = [&] {
       const Eigen::VectorXd y = ahead.coordinates(next);
       return ahead.flipped(y) == 0 && wrongCones(mesh, index, basis, y).empty();
     };
-    if (!injective()) untangle(ahead, basis, next, iterations, budget, progress);
+    if (!injective()) untangle(ahead, basis, next, iterations, solver, budget, progress);
     ++iterations;
     if (!injective()) {
       step = length / 2;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "trimquad/base/progress.h"
+#include "trimquad/base/sparse_solver.h"
 #include "trimquad/seamless/map_energy.h"
 #include "trimquad/seamless/step_budget.h"
 
@@ -10,10 +11,12 @@ namespace trimquad {
 /// the values they have in x to their own in steps that are as long as a map near the one before can be found
 /// for, by a Poisson solve and untangling. Returns z of the basis, or nothing where the steps become too
 /// small.
+/// \param energy  of the basis
 /// \param x  coordinates of the basis; all its equations hold but for constants
-std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, const MapTarget& target,
+std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEnergy energy,
                                                  const std::vector<int>& index, const SeamBasis& basis,
                                                  const Eigen::VectorXd& x, int& iterations,
-                                                 StepBudget& budget, const Progress& progress);
+                                                 SparseSolver& solver, StepBudget& budget,
+                                                 const Progress& progress);
 
 }  // namespace trimquad

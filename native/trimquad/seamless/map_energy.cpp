@@ -25,17 +25,30 @@ MapDensity foldoverFree(double I, double D, double epsilon) {
 
 MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis)
     : basis_(basis.basis()), local_(mesh.n_faces()) {
+  std::vector<HessianPattern::Corners> corners;
+  corners.reserve(local_.size());
   for (const auto f : mesh.faces()) {
     auto& local = local_[f.idx()];
-    const auto& corner = target[f.idx()];
     HalfedgeHandle h = mesh.halfedge_handle(f);
+    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h))
+      for (int axis = 0; axis < 2; ++axis)
+        local.coordinate[2 * k + axis] = basis.coordinate(basis.wedge(h), axis);
+    corners.push_back(local.coordinate);
+  }
+  pattern_ = HessianPattern(basis_, corners);
+  aim(target);
+}
+
+void MapEnergy::aim(const MapTarget& target) {
+  totalArea_ = 0;
+  for (size_t f = 0; f < local_.size(); ++f) {
+    auto& local = local_[f];
+    const auto& corner = target[f];
     const Eigen::Vector2d e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
     const double twice = e1.x() * e2.y() - e1.y() * e2.x();
     local.area = twice / 2;
     totalArea_ += local.area;
-    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
-      local.coordinate[2 * k] = basis.coordinate(basis.wedge(h), 0);
-      local.coordinate[2 * k + 1] = basis.coordinate(basis.wedge(h), 1);
+    for (int k = 0; k < 3; ++k) {
       const Eigen::Vector2d across = corner[(k + 2) % 3] - corner[(k + 1) % 3];
       const double gx = -across.y() / twice,
                    gy = across.x() / twice;  // gradient of the corner's hat function
@@ -43,10 +56,6 @@ MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const Sea
       local.toJacobian.col(2 * k + 1) << gy / 2, gx / 2, -gy / 2, gx / 2;
     }
   }
-  std::vector<HessianPattern::Corners> corners;
-  corners.reserve(local_.size());
-  for (const auto& local : local_) corners.push_back(local.coordinate);
-  pattern_ = HessianPattern(basis_, corners);
 }
 
 void MapEnergy::setScaffold(int first, double weight) {

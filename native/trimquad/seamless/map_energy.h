@@ -32,6 +32,9 @@ class MapEnergy {
  public:
   MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis);
 
+  /// Changes the target. Triangles weigh what their areas in it are.
+  void aim(const MapTarget& target);
+
   /// Makes triangles from `first` on part of a scaffold: each has the weight `weight` instead of its area,
   /// and they do not follow their target's directions.
   void setScaffold(int first, double weight);

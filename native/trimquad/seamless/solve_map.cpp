@@ -137,8 +137,7 @@ bool staysPositive(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen:
 }  // namespace
 
 void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
-              StepBudget& budget, const Progress& progress) {
-  SparseSolver solver("seamless");
+              SparseSolver& solver, StepBudget& budget, const Progress& progress) {
   double least = energy.smallestDeterminant(energy.coordinates(z));
   if (least > 0) return;
   // Where it works, every few rounds halve the depth of the deepest fold, or turn triangles back, or leave
@@ -172,20 +171,20 @@ void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& 
   }
 }
 
-Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis) {
+Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis, SparseSolver& solver) {
   // The squared distance to the target alone: its first Newton step from anywhere is the solution.
   const auto none = [](double, double) { return MapDensity{0, 0, 0, 0, 0}; };
   Eigen::VectorXd z = Eigen::VectorXd::Zero(basis.basis().freeCount()), gradient;
   if (z.size() == 0) return z;
   Eigen::SparseMatrix<double> hessian;
   energy.derivatives(energy.coordinates(z), none, 1, gradient, hessian);
-  SparseSolver solver("seamless");
   solver.factorize(hessian);
   return z - solver.solve(gradient);
 }
 
 Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis) {
-  return leastSquares(MapEnergy(mesh, target, basis), basis);
+  SparseSolver solver("seamless");
+  return leastSquares(MapEnergy(mesh, target, basis), basis, solver);
 }
 
 bool isInjective(const MapProblem& problem, const MapEnergy& energy, const Eigen::VectorXd& z) {
@@ -211,7 +210,10 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
                      "triangle " + std::to_string(flat.front()),
                      mesh.calc_face_centroid(FaceHandle(flat.front())));
   UntangledMaps maps;
-  Eigen::VectorXd z = poissonMap(mesh, *starts.front().target, basis);
+  SparseSolver solver(stage);
+  MapEnergy even = energy;
+  even.aim(*starts.front().target);
+  Eigen::VectorXd z = leastSquares(even, basis, solver);
   progress.report(0.2);
   counters.flippedBefore = energy.flipped(energy.coordinates(z));
   constexpr double kEasy = 1e-3;  // of the triangles
@@ -220,18 +222,18 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
   if (effort == Effort::Easy && isHard) maps.reached.push_back(z);
   if (!maps.reached.empty() || maps.injective) return maps;
   if (nearby)
-    if (const auto moved =
-            followConstraints(mesh, target, index, basis, *nearby, counters.pathSteps, budget, progress);
+    if (const auto moved = followConstraints(mesh, energy, index, basis, *nearby, counters.pathSteps, solver,
+                                             budget, progress);
         moved && isInjective(problem, energy, *moved)) {
       maps.injective = moved;
       return maps;
     }
   for (const auto& start : starts) {
     ++counters.starts;
-    MapEnergy even(mesh, *start.target, basis);
+    even.aim(*start.target);
     even.evenOut(start.evenness);
-    z = leastSquares(even, basis);
-    untangle(even, basis, z, counters.untangleIterations, budget, progress);
+    z = leastSquares(even, basis, solver);
+    untangle(even, basis, z, counters.untangleIterations, solver, budget, progress);
     maps.reached.push_back(z);
     if (!isInjective(problem, energy, z)) continue;
     maps.injective = z;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "trimquad/base/progress.h"
+#include "trimquad/base/sparse_solver.h"
 #include "trimquad/seamless/map_energy.h"
 #include "trimquad/seamless/seam_basis.h"
 #include "trimquad/seamless/seamless_map.h"
@@ -12,12 +13,12 @@
 namespace trimquad {
 
 /// The map, z, with the least squared distance to the energy's target.
-Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis);
+Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis, SparseSolver& solver);
 
 /// Newton steps on the foldover-free energy until no triangle is flipped, or no progress is made, or the
 /// budget is spent.
 void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
-              StepBudget& budget, const Progress& progress);
+              SparseSolver& solver, StepBudget& budget, const Progress& progress);
 
 /// The Poisson map: the least-squares fit of the target over the basis, z. Triangles may be flipped.
 Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis);

@@ -36,6 +36,7 @@ std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapSt
   constexpr double kFactor = 3;
   MapEnergy energy(mesh, *start.target, basis);
   energy.evenOut(start.evenness);
+  SparseSolver solver("seamless");
   size_t fewest = std::numeric_limits<size_t>::max();
   for (int round = 0, idle = 0; round < kRounds && idle < kPatience && !budget.spent(); ++round) {
     progress.check();
@@ -47,9 +48,9 @@ std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapSt
     std::vector<double> factor(mesh.n_faces());
     for (size_t f = 0; f < factor.size(); ++f) factor[f] = inside[f] ? kFactor : 1;
     energy.stiffen(factor);
-    z = leastSquares(energy, basis);
+    z = leastSquares(energy, basis, solver);
     ++counters.stiffenings;
-    untangle(energy, basis, z, counters.untangleIterations, budget, progress);
+    untangle(energy, basis, z, counters.untangleIterations, solver, budget, progress);
   }
   return std::nullopt;
 }
