@@ -270,6 +270,7 @@ FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const S
     // A sharp edge that separates nothing is still sharp: no smooth surface follows it.
     const bool byDefault = result.cut[e] ? options.alignBoundary : bool(edges.sharp[e]);
     result.aligned.push_back((byDefault || chosenAligned[e]) && !freed[e]);
+    result.alignedAsBorder.push_back((options.alignBoundary || chosenAligned[e]) && !freed[e]);
     result.inner.push_back(result.aligned[e] && !result.cut[e]);
     result.cut[e] |= result.inner[e];
   }
@@ -277,6 +278,12 @@ FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const S
   for (size_t s = 0; s < result.crease.size(); ++s)
     if (result.crease[s] && result.cut[*mesh.sides[s].cadEdge]) result.crease[s] = 0;
   return result;
+}
+
+void cutAlong(FeatureEdges& features, int edge) {
+  if (features.inner[edge]) features.aligned[edge] = features.alignedAsBorder[edge];
+  features.cut[edge] = 1;
+  features.inner[edge] = 0;
 }
 
 std::vector<char> featureVertices(const CadModel& model, const WeldedMesh& mesh,

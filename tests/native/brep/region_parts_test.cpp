@@ -69,7 +69,9 @@ void expectWatertight(const Model& model) {
       if (!region.mesh.is_boundary(h)) continue;
       const auto at = [&](VertexHandle v) {
         const Vector3d p = region.mesh.point(v);
-        if (const auto& corner = region.corner[v.idx()]) EXPECT_EQ(p, model.corners[corner->index]);
+        if (const auto& corner = region.corner[v.idx()]) {
+          EXPECT_EQ(p, model.corners[corner->index]);
+        }
         return Place{p.x(), p.y(), p.z()};
       };
       const Place a = at(region.mesh.from_vertex_handle(h)), b = at(region.mesh.to_vertex_handle(h));
