@@ -31,6 +31,9 @@ REFITS = (
     {"part": 0.4},
     {"part": 0.16},
 )
+# The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
+# have it. Where trims cross, the parts around are fitted to this part of the tolerance first.
+CLOSER = 0.1
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Triangles per quad edge of the tessellation.
@@ -59,6 +62,7 @@ class RegionResult:
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.seconds = {}
         self.cut_from = None
+        self.fitted_closer = False
         self.cuts_left = MOST_CUTS
 
     @property
@@ -378,7 +382,9 @@ def _polygonal(quads, item, options):
     return quads
 
 
-def _fit(item, result, progress, smallest_rectangle=False, part=1.0):
+def _fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
+    """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
+    for `only`."""
     options = result.options
     native = load()
     tolerance = part * result.fit_tolerance
@@ -387,7 +393,7 @@ def _fit(item, result, progress, smallest_rectangle=False, part=1.0):
         item.fitted_from.grid,
         native.FitOptions(
             tolerance=tolerance,
-            enough=ENOUGH * options.tolerance if part == 1 else tolerance,
+            enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
             smallest_rectangle=smallest_rectangle,
             bisections=item.bisections,
             degree=options.degree,
@@ -512,6 +518,24 @@ def _refit(item, charts, error, result, progress):
         item.error = failure
 
 
+def _fit_parts_closer(item, result, progress):
+    """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
+    closer = False
+    for index in load().touching_regions(result.model, result.regions.index(item)):
+        part = result.regions[index]
+        if part.cut_from is None or part.fitted is None or part.fitted_closer:
+            continue
+        part.fitted_closer = True
+        try:
+            with progress.stage("fit", part.name) as native_progress:
+                part.fitted = _fit(part, result, native_progress, part=CLOSER, only=False)
+            closer = True
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+    return closer
+
+
 def _applies(way, item, charts):
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
@@ -559,7 +583,8 @@ def _trim(result, progress):
             name = error.where.split(",")[0]
             guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
             for item in guilty:
-                _refit(item, set(), error, result, progress)
+                if not _fit_parts_closer(item, result, progress):
+                    _refit(item, set(), error, result, progress)
             if not guilty:
                 for item in result.regions:
                     if item.fitted is not None:

@@ -15,7 +15,8 @@ class Progress:
     """`cancel()`, `fraction` and `description` may be used from any thread."""
 
     def __init__(self):
-        self._lock = threading.Lock()
+        # Reentrant: a signal's handler may cancel while the same thread reads the description.
+        self._lock = threading.RLock()
         self._cancelled = False
         self._running = {}  # native progress -> (share of the whole, text)
         self._finished = 0.0

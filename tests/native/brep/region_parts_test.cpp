@@ -7,6 +7,7 @@
 #include <set>
 
 #include "trimquad/brep/tessellate.h"
+#include "trimquad/mesh/touching_regions.h"
 
 // After OpenMesh: OpenCASCADE's macros must not reach the mesh headers.
 #include <gtest/gtest.h>
@@ -119,6 +120,14 @@ TEST(RegionParts, aPlaceCutsOutTheFaceThere) {
   const double fillet =
       std::min(surfaceArea(model.regions[cut].mesh), surfaceArea(model.regions[cut + 1].mesh));
   EXPECT_NEAR(fillet, 0.5 * std::numbers::pi / 2 * 2, 0.01);
+}
+
+TEST(RegionParts, touchTheirNeighbours) {
+  const Model whole = tessellated(roundedBox());
+  EXPECT_EQ(touchingRegions(whole, side(whole)), (std::vector<int>{0, 1, 2}));
+  const Model model = cutAt(whole, side(whole), {});
+  // Of eight parts in a ring, each touches the next ones, top and bottom.
+  EXPECT_EQ(touchingRegions(model, side(whole)).size(), 5u);
 }
 
 TEST(RegionParts, canBeCutAgain) {
