@@ -32,7 +32,7 @@ REFITS = (
     {"part": 0.16},
 )
 # The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
-# have it. Where trims cross, the parts around are fitted to this part of the tolerance first.
+# have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first.
 CLOSER = 0.1
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
@@ -548,6 +548,8 @@ def _refit_faulty(result, progress):
     for face, faults in zip(result.spline.faces, load().face_faults(result.spline)):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
+    if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
+        return True
     for index, found in faulty.items():
         item = result.regions[index]
         advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
