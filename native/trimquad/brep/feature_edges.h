@@ -47,8 +47,8 @@ struct FeatureEdges {
 FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
                           const std::vector<char>& reversed, const FeatureOptions& options, double reach);
 
-/// Makes an edge one that separates regions.
-void cutAlong(FeatureEdges& features, int edge);
+/// Makes CAD edges such that separate regions.
+void cutAlong(FeatureEdges& features, const WeldedMesh& mesh, const std::vector<int>& edges);
 
 /// By vertex of the welded mesh: whether the options name it. Throws Error(Input, "options") for names of
 /// vertices that are not there.

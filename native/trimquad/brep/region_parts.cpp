@@ -141,7 +141,7 @@ RegionParts partsAlong(const Model& model, int index, std::vector<int> edges, bo
                        const Progress& progress) {
   const CadOrigin& origin = *model.origin;
   FeatureEdges features = origin.features;
-  for (const int e : edges) cutAlong(features, e);
+  cutAlong(features, origin.shape->mesh, edges);
   CutModel cut = cutRegions(*origin.shape, features, origin.triangles[index]);
   auto division = divideCurves(cut.model, origin.remeshing);
   std::vector<CurvePoint> fresh;
@@ -238,7 +238,7 @@ Model withParts(const Model& model, const std::map<int, const RegionParts*>& par
       for (auto& part : adopted(cut, model.regions[r].name, result, origin))
         result.regions.push_back(std::move(part));
       origin.triangles.insert(origin.triangles.end(), cut.triangles.begin(), cut.triangles.end());
-      for (const int e : cut.cut) cutAlong(origin.features, e);
+      cutAlong(origin.features, origin.shape->mesh, cut.cut);
     } else {
       result.regions.push_back(model.regions[r]);
       origin.triangles.push_back(model.origin->triangles[r]);
