@@ -6,6 +6,7 @@ from typing import NamedTuple, Tuple
 
 import numpy
 
+from .cuts import MOST_CUTS, Cut, cut_failed
 from .error import Error, cancelled, input_error, system_error
 from .freecad_shape import shape_from_bytes
 from .native import load
@@ -30,6 +31,9 @@ REFITS = (
     {"part": 0.4},
     {"part": 0.16},
 )
+# The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
+# have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first.
+CLOSER = 0.1
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Triangles per quad edge of the tessellation.
@@ -41,6 +45,7 @@ class RegionResult:
 
     name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
     fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds;
+    cut_from: name of the region that it is a part of, None for a whole; cuts_left: how often it may be cut if it fails;
     holes: what became of boundary loops shorter than `fill_holes`; bridged: the region with its holes bridged, which
     field, seamless and tmesh are of (the region itself where no hole is).
     """
@@ -56,6 +61,9 @@ class RegionResult:
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where creases were given up
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.seconds = {}
+        self.cut_from = None
+        self.fitted_closer = False
+        self.cuts_left = MOST_CUTS
 
     @property
     def polygons(self):
@@ -122,7 +130,8 @@ class Result:
 
     source, options (resolved), model, regions (RegionResult each), spline (the B-spline faces and their shared edges,
     or None where no region got that far), native_shape (the same assembled), faults (what OpenCASCADE finds wrong with
-    it, "Edge7, Face2: SelfIntersect"), warnings (lines for the user), seconds (of stages of the whole model).
+    it, "Edge7, Face2: SelfIntersect"), cuts (a Cut for each region that was replaced by its parts), warnings (lines for the
+    user), seconds (of stages of the whole model).
     """
 
     def __init__(self, source, options, model):
@@ -134,6 +143,8 @@ class Result:
         self.spline = self.native_shape = None
         self.repairs = {}
         self.faults = []
+        self.cuts = []
+        self.guidance = None  # by region: its directions from a file
         self.warnings = []
         self.shape_counts = {}
         self.seconds = {}
@@ -150,6 +161,33 @@ class Result:
     def failed(self):
         """The regions that failed."""
         return [r for r in self.regions if r.error is not None]
+
+    def replace_by_parts(self, parts):
+        """Replaces regions that failed by their parts (number of the region: RegionParts). Returns the numbers and the
+        RegionResults of these."""
+        before, self.model = self.model.regions, load().with_parts(self.model, parts)
+        places, wholes, added = iter(enumerate(self.model.regions)), self.regions, []
+        self.regions = []
+        for number, whole in enumerate(wholes):
+            if number not in parts:
+                region = next(places)[1]
+                for name in ("region", "mapped_region", "bridged"):
+                    if getattr(whole, name) is before[number]:
+                        setattr(whole, name, region)
+                self.regions.append(whole)
+                continue
+            for index, region in (next(places) for _ in range(parts[number].count)):
+                part = RegionResult(region)
+                part.cut_from, part.cuts_left = whole.name, whole.cuts_left
+                part.guidance = self.guidance and self.guidance(region)
+                self.regions.append(part)
+                added.append((index, part))
+            names = tuple(part.name for _, part in added[-parts[number].count :])
+            self.cuts.append(
+                Cut(whole.name, whole.error, tuple(parts[number].edges), names, sum(whole.seconds.values()))
+            )
+            self.warnings.append(self.cuts[-1].warning)
+        return added
 
     @property
     def report(self):
@@ -194,15 +232,16 @@ def _convert(source, options, progress):
     with progress.stage("tessellate") as native_progress:
         build = _cad_model if source.kind == "cad" else _mesh_model
         result = build(source, thing, options, native_progress)
-        guidance = _read_field(result, thing)
-    if guidance is not None:
+        result.guidance = _read_field(result, thing)
+    if result.guidance is not None:
         for item in result.regions:
-            item.guidance = guidance(item.region)
+            item.guidance = result.guidance(item.region)
     result.started = started
     result.seconds["tessellate"] = time.monotonic() - started
-    _map_regions(result, progress)
-    _warn_of_holes(result)
+    _map_regions(list(enumerate(result.regions)), result, progress)
     _trim(result, progress)
+    _warn_of_regions(result)
+    _warn_of_holes(result)
     _check(result, progress)
     return result
 
@@ -268,11 +307,17 @@ def _read_field(result, thing):
     return lambda region: native.guidance_of_triangles(region, directions)
 
 
-def _map_regions(result, progress):
-    progress.region_count = max(1, len(result.regions))
-    with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
-        for done in [pool.submit(_map_region, r, k, result, progress) for k, r in enumerate(result.regions)]:
-            done.result()
+def _map_regions(waiting, result, progress):
+    """The stages of regions (number, RegionResult), then of the parts of those that failed."""
+    while waiting:
+        progress.region_count = len(result.regions)
+        with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
+            for done in [pool.submit(_map_region, r, k, result, progress) for k, r in waiting]:
+                done.result()
+        waiting = cut_failed(result, progress)
+
+
+def _warn_of_regions(result):
     for item in result.regions:
         if item.error is None and item.edge_length != result.options.edge_length:
             result.warnings.append(
@@ -338,7 +383,9 @@ def _polygonal(quads, item, options):
     return quads
 
 
-def _fit(item, result, progress, smallest_rectangle=False, part=1.0):
+def _fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
+    """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
+    for `only`."""
     options = result.options
     native = load()
     tolerance = part * result.fit_tolerance
@@ -347,7 +394,7 @@ def _fit(item, result, progress, smallest_rectangle=False, part=1.0):
         item.fitted_from.grid,
         native.FitOptions(
             tolerance=tolerance,
-            enough=ENOUGH * options.tolerance if part == 1 else tolerance,
+            enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
             smallest_rectangle=smallest_rectangle,
             bisections=item.bisections,
             degree=options.degree,
@@ -472,6 +519,24 @@ def _refit(item, charts, error, result, progress):
         item.error = failure
 
 
+def _fit_parts_closer(item, result, progress):
+    """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
+    closer = False
+    for index in load().touching_regions(result.model, result.regions.index(item)):
+        part = result.regions[index]
+        if part.cut_from is None or part.fitted is None or part.fitted_closer:
+            continue
+        part.fitted_closer = True
+        try:
+            with progress.stage("fit", part.name) as native_progress:
+                part.fitted = _fit(part, result, native_progress, part=CLOSER, only=False)
+            closer = True
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+    return closer
+
+
 def _applies(way, item, charts):
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
@@ -484,6 +549,8 @@ def _refit_faulty(result, progress):
     for face, faults in zip(result.spline.faces, load().face_faults(result.spline)):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
+    if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
+        return True
     for index, found in faulty.items():
         item = result.regions[index]
         advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
@@ -492,10 +559,11 @@ def _refit_faulty(result, progress):
 
 
 def _trim(result, progress):
-    """Trims and joins the fitted surfaces. A region that cannot be trimmed is fitted again; where that does not help it
-    is left out and the others tried again."""
+    """Trims and joins the fitted surfaces. A region that cannot be trimmed is fitted again, then cut; where that does not
+    help it is left out and the others tried again."""
     native = load()
     started = time.monotonic()
+    elsewhere = 0.0
     while any(r.fitted is not None for r in result.regions):
         try:
             with progress.stage("trim") as native_progress:
@@ -518,15 +586,20 @@ def _trim(result, progress):
             name = error.where.split(",")[0]
             guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
             for item in guilty:
-                _refit(item, set(), error, result, progress)
+                if not _fit_parts_closer(item, result, progress):
+                    _refit(item, set(), error, result, progress)
             if not guilty:
                 for item in result.regions:
                     if item.fitted is not None:
                         item.fitted = None
                         item.error = error
+                        item.cuts_left = 0  # none of them is to blame
+        paused = time.monotonic()
+        _map_regions(cut_failed(result, progress), result, progress)
+        elsewhere += time.monotonic() - paused
     if result.spline is None:
         result.native_shape = None
-    result.seconds["trim"] = time.monotonic() - started
+    result.seconds["trim"] = time.monotonic() - started - elsewhere
     if progress.cancelled:
         raise cancelled()
 

@@ -6,16 +6,17 @@ from .error import cancelled
 
 # Parts of the whole, by measured time on typical models.
 WEIGHTS = {"read": 0.02, "tessellate": 0.18, "regions": 0.5, "trim": 0.15, "check": 0.05, "write": 0.1}
-# Bridging holes takes next to no time. The grid map is made by one of two stages, rarely by both: then the whole is
+# Bridging holes and cutting regions take next to no time. The grid map is made by one of two stages, rarely by both: then the whole is
 # reached a little early.
-STAGE_SHARES = {"bridge": 0.0, "seamless": 0.37, "partition": 0.01, "quantize": 0.02, "optimize": 0.1, "reembed": 0.1, "extract": 0.05, "fit": 0.45}
+STAGE_SHARES = {"bridge": 0.0, "cut": 0.0, "seamless": 0.37, "partition": 0.01, "quantize": 0.02, "optimize": 0.1, "reembed": 0.1, "extract": 0.05, "fit": 0.45}
 
 
 class Progress:
     """`cancel()`, `fraction` and `description` may be used from any thread."""
 
     def __init__(self):
-        self._lock = threading.Lock()
+        # Reentrant: a signal's handler may cancel while the same thread reads the description.
+        self._lock = threading.RLock()
         self._cancelled = False
         self._running = {}  # native progress -> (share of the whole, text)
         self._finished = 0.0

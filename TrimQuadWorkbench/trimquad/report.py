@@ -30,10 +30,12 @@ def report(result):
         "warnings": result.warnings,
         "options": {k: v for k, v in sorted(vars(result.options).items())},
         "regions": regions,
+        "cuts": [_cut_report(cut) for cut in result.cuts],
         "curves": result.model.curves,
         "faults": result.faults,
         "loose_edges": result.spline and result.spline.loose_edges,
-        "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions), 6),
+        "seconds_total": round(sum(sum(v or 0 for v in r["seconds"].values()) for r in regions)
+                               + sum(cut.seconds for cut in result.cuts), 6),
         "peak_memory_mb": _peak_memory_mb(),
         "version": load().version,
         "opencascade": load().occ_version,
@@ -45,9 +47,8 @@ def _region_report(result, index, item, deviations, seconds):
     return {
         "name": item.name,
         "status": "ok" if error is None else "failed",
-        "error": None if error is None else {
-            "stage": error.stage, "message": error.message, "where": error.where, "position": error.position,
-        },
+        "error": error and _error_report(error),
+        "cut_from": item.cut_from,
         "mesh": {
             "triangles": item.region.triangles,
             "vertices": item.region.vertices,
@@ -67,6 +68,20 @@ def _region_report(result, index, item, deviations, seconds):
         "histograms": item.quads and histograms(item.quads, item.edge_length),
         "nurbs": item.fitted and result.spline and _nurbs_report(result, index, item, deviations),
         "seconds": seconds,
+    }
+
+
+def _error_report(error):
+    return {"stage": error.stage, "message": error.message, "where": error.where, "position": error.position}
+
+
+def _cut_report(cut):
+    return {
+        "region": cut.region,
+        "error": _error_report(cut.error),
+        "edges": cut.edges,
+        "parts": cut.parts,
+        "seconds": round(cut.seconds, 6),
     }
 
 

@@ -1,9 +1,11 @@
+#include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "bindings.h"
 #include "trimquad/brep/assemble.h"
 #include "trimquad/brep/deviation_map.h"
+#include "trimquad/brep/region_parts.h"
 #include "trimquad/brep/shape.h"
 #include "trimquad/brep/tessellate.h"
 
@@ -65,6 +67,16 @@ void bindBrep(py::module_& m) {
       py::arg("shape"));
   m.def("tessellate", &tessellateShape, py::arg("shape"), py::kw_only(), py::arg("edge_length"),
         py::arg("tolerance"), py::arg("features"), py::arg("progress"), Released());
+  py::class_<RegionParts>(m, "RegionParts")
+      .def_property_readonly("count", [](const RegionParts& parts) { return parts.model.regions.size(); })
+      .def_readonly("edges", &RegionParts::edges, "names of the edges that were cut");
+  m.def("region_parts", &regionParts, py::arg("model"), py::arg("region"), py::arg("place"),
+        py::arg("progress"), Released(),
+        "A region cut along its smooth inner edges: around the CAD faces at `place`, or between all faces "
+        "where it "
+        "is None. None where there is nothing to cut.");
+  m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
+        "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
   m.def("face_faults", &faceFaults, py::arg("spline"), Released(),
         "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone");

@@ -14,6 +14,7 @@
 #include "trimquad/mesh/parametrization.h"
 #include "trimquad/mesh/read_mesh.h"
 #include "trimquad/mesh/region.h"
+#include "trimquad/mesh/touching_regions.h"
 
 namespace py = pybind11;
 
@@ -232,6 +233,8 @@ void bindMesh(py::module_& m) {
       .def_readonly("diagonal", &Model::diagonal)
       .def_readonly("kept_apart", &Model::keptApart)
       .def_property_readonly("curves", &curvesOf, "the list `curves` of report.json");
+  m.def("touching_regions", &touchingRegions, py::arg("model"), py::arg("region"), Released(),
+        "Numbers of the regions that have a corner in common with one, ascending.");
   py::class_<FeatureOptions>(m, "FeatureOptions")
       .def(py::init([](const std::string& features, double angle, bool alignBoundary,
                        std::vector<std::string> align, std::vector<std::string> free,

@@ -14,10 +14,14 @@ namespace {
 
 class RegionCutter {
  public:
-  RegionCutter(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-               const FeatureEdges& features, const std::vector<char>& points,
-               const std::vector<char>& reversed)
-      : cad_(cad), mesh_(mesh), uses_(uses), features_(features), points_(points), reversed_(reversed) {}
+  RegionCutter(const WeldedShape& shape, const FeatureEdges& features, const std::vector<int>& triangles)
+      : cad_(shape.cad),
+        mesh_(shape.mesh),
+        uses_(shape.uses),
+        features_(features),
+        triangles_(triangles),
+        points_(shape.points),
+        reversed_(shape.reversed) {}
 
   CutModel run() {
     makeCurves();
@@ -25,12 +29,12 @@ class RegionCutter {
     for (const auto& triangles : groups) makeRegion(triangles);
     makeShells(groups);
     Eigen::AlignedBox3d box;
-    for (const auto& triangle : mesh_.triangles)
-      for (const int v : triangle.vertex) box.extend(mesh_.vertices[v].point);
+    for (const int t : triangles_)
+      for (const int v : mesh_.triangles[t].vertex) box.extend(mesh_.vertices[v].point);
     model_.diagonal = box.diagonal().norm();
-    auto surfaces = joinedSurfaces(groups);
-    return {std::move(model_), std::move(creases_), std::move(inner_), std::move(aligned_),
-            std::move(surfaces)};
+    auto [joined, surfaces] = joinedSurfaces(groups);
+    return {std::move(model_),   std::move(creases_),   std::move(inner_),   std::move(aligned_),
+            std::move(cadEdge_), std::move(cadVertex_), std::move(surfaces), std::move(joined)};
   }
 
  private:
@@ -43,12 +47,14 @@ class RegionCutter {
     curveOfEdge_.resize(cad_.edges.size());
     cornerOfVertex_.resize(cad_.vertices.size());
     std::vector<char> used(cad_.edges.size(), 0);
-    for (size_t s = 0; s < uses_.size(); ++s)
-      if (!uses_[s].empty() && isCut(int(s))) used[*mesh_.sides[s].cadEdge] = 1;
+    for (const int t : triangles_)
+      for (const int s : mesh_.triangles[t].side)
+        if (isCut(s)) used[*mesh_.sides[s].cadEdge] = 1;
     const auto cornerAt = [&](int vertex) {
       if (!cornerOfVertex_[vertex]) {
         cornerOfVertex_[vertex] = CornerId{int(model_.corners.size())};
         model_.corners.push_back(cad_.vertices[vertex]);
+        cadVertex_.push_back(vertex);
       }
       return *cornerOfVertex_[vertex];
     };
@@ -60,22 +66,25 @@ class RegionCutter {
       model_.curves.push_back({cadCurve(edge), start, end, edge.name});
       inner_.push_back(features_.inner[e]);
       aligned_.push_back(features_.aligned[e]);
+      cadEdge_.push_back(int(e));
     }
   }
 
   /// Triangles connected across sides that are not cut; in the order of their first triangles.
   std::vector<std::vector<int>> triangleGroups() const {
     DisjointSets groups(mesh_.triangles.size());
-    for (size_t s = 0; s < uses_.size(); ++s) {
-      if (uses_[s].size() == 2 && !isCut(int(s))) groups.unite(uses_[s][0].first, uses_[s][1].first);
-      if (uses_[s].size() == 1 && !isCut(int(s)))
-        throw inputError("tessellate", "the face cannot be triangulated: its wires cross; repair the shape",
-                         cad_.faces[mesh_.triangles[uses_[s][0].first].face].name,
-                         mesh_.vertices[mesh_.sides[s].from].point);
-    }
+    for (const int t : triangles_)
+      for (const int s : mesh_.triangles[t].side) {
+        if (isCut(s)) continue;
+        if (uses_[s].size() == 1)
+          throw inputError("tessellate", "the face cannot be triangulated: its wires cross; repair the shape",
+                           cad_.faces[mesh_.triangles[t].face].name,
+                           mesh_.vertices[mesh_.sides[s].from].point);
+        groups.unite(uses_[s][0].first, uses_[s][1].first);
+      }
     std::vector<std::vector<int>> result;
     std::vector<int> number(mesh_.triangles.size(), -1);
-    for (int t = 0; t < int(mesh_.triangles.size()); ++t) {
+    for (const int t : triangles_) {
       int& n = number[groups.root(t)];
       if (n < 0) {
         n = int(result.size());
@@ -184,7 +193,8 @@ class RegionCutter {
     }
   }
 
-  std::vector<std::shared_ptr<const TrueSurface>> joinedSurfaces(
+  /// Triangles and surfaces of the regions after joining.
+  std::pair<std::vector<std::vector<int>>, std::vector<std::shared_ptr<const TrueSurface>>> joinedSurfaces(
       const std::vector<std::vector<int>>& groups) const {
     const std::vector<int> joined = joinedRegions(model_, inner_);
     std::vector<std::vector<int>> triangles;
@@ -200,27 +210,30 @@ class RegionCutter {
     for (size_t j = 0; j < triangles.size(); ++j)
       surfaces.push_back(parts[j] == 1 ? model_.regions[part[j]].surface
                                        : cadSurface(cad_, mesh_, triangles[j], reversed_));
-    return surfaces;
+    for (auto& all : triangles) std::sort(all.begin(), all.end());
+    return {std::move(triangles), std::move(surfaces)};
   }
 
   const CadModel& cad_;
   const WeldedMesh& mesh_;
   const SideUses& uses_;
   const FeatureEdges& features_;
+  const std::vector<int>& triangles_;
   const std::vector<char>&points_, &reversed_;
   std::vector<std::optional<CurveId>> curveOfEdge_;
   std::vector<std::optional<CornerId>> cornerOfVertex_;
   Model model_;
   std::vector<Creases> creases_;
   std::vector<char> inner_, aligned_;  ///< by curve
+  std::vector<int> cadEdge_;           ///< by curve
+  std::vector<int> cadVertex_;         ///< by corner
 };
 
 }  // namespace
 
-CutModel cutRegions(const CadModel& cad, const WeldedMesh& mesh, const SideUses& uses,
-                    const FeatureEdges& features, const std::vector<char>& points,
-                    const std::vector<char>& reversed) {
-  return RegionCutter(cad, mesh, uses, features, points, reversed).run();
+CutModel cutRegions(const WeldedShape& shape, const FeatureEdges& features,
+                    const std::vector<int>& triangles) {
+  return RegionCutter(shape, features, triangles).run();
 }
 
 }  // namespace trimquad

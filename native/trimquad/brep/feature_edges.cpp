@@ -177,6 +177,11 @@ std::vector<char> chosen(const CadModel& model, const Sharpness& edges,
   return result;
 }
 
+void dropCutCreases(const WeldedMesh& mesh, FeatureEdges& features) {
+  for (size_t s = 0; s < features.crease.size(); ++s)
+    if (features.crease[s] && features.cut[*mesh.sides[s].cadEdge]) features.crease[s] = 0;
+}
+
 }  // namespace
 
 SideUses sideUses(const CadModel& model, const WeldedMesh& mesh) {
@@ -270,13 +275,22 @@ FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const S
     // A sharp edge that separates nothing is still sharp: no smooth surface follows it.
     const bool byDefault = result.cut[e] ? options.alignBoundary : bool(edges.sharp[e]);
     result.aligned.push_back((byDefault || chosenAligned[e]) && !freed[e]);
+    result.alignedAsBorder.push_back((options.alignBoundary || chosenAligned[e]) && !freed[e]);
     result.inner.push_back(result.aligned[e] && !result.cut[e]);
     result.cut[e] |= result.inner[e];
   }
   result.crease = edges.crease;
-  for (size_t s = 0; s < result.crease.size(); ++s)
-    if (result.crease[s] && result.cut[*mesh.sides[s].cadEdge]) result.crease[s] = 0;
+  dropCutCreases(mesh, result);
   return result;
+}
+
+void cutAlong(FeatureEdges& features, const WeldedMesh& mesh, const std::vector<int>& edges) {
+  for (const int e : edges) {
+    if (features.inner[e]) features.aligned[e] = features.alignedAsBorder[e];
+    features.cut[e] = 1;
+    features.inner[e] = 0;
+  }
+  dropCutCreases(mesh, features);
 }
 
 std::vector<char> featureVertices(const CadModel& model, const WeldedMesh& mesh,

@@ -32,6 +32,8 @@ struct FeatureEdges {
   std::vector<char> inner;
   /// By CAD edge: whether grid lines must run along it. All inner ones are.
   std::vector<char> aligned;
+  /// By CAD edge: the same for inner ones, if they separated regions.
+  std::vector<char> alignedAsBorder;
   /// By side of the welded mesh: whether the surface turns by more than the feature angle within `reach`
   /// (model units) to both sides of it, on an edge that is not cut. Triangles of about that size must not
   /// reach across.
@@ -44,6 +46,9 @@ struct FeatureEdges {
 /// that are not there.
 FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const SideUses& uses,
                           const std::vector<char>& reversed, const FeatureOptions& options, double reach);
+
+/// Makes CAD edges such that separate regions.
+void cutAlong(FeatureEdges& features, const WeldedMesh& mesh, const std::vector<int>& edges);
 
 /// By vertex of the welded mesh: whether the options name it. Throws Error(Input, "options") for names of
 /// vertices that are not there.

@@ -5,17 +5,16 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "trimquad/mesh/divide_curves.h"
 #include "trimquad/mesh/feature_points.h"
-#include "trimquad/mesh/join_regions.h"
-#include "trimquad/mesh/remesh.h"
-#include "trimquad/mesh/split_triangles.h"
 
 // This order: OpenCASCADE's macros must not reach the mesh headers.
 #include "trimquad/brep/cut_regions.h"
 #include "trimquad/brep/inner_edges.h"
+#include "trimquad/brep/meshed_regions.h"
 #include "trimquad/brep/occt_guard.h"
 
 namespace trimquad {
@@ -33,15 +32,26 @@ void demandPositive(double value, const char* option) {
     throw inputError("tessellate", std::string(option) + " must be a positive number");
 }
 
-CutModel cutIntoRegions(const CadModel& cad, double deflection, const TessellateOptions& options) {
-  WeldedMesh mesh = weldedMesh(cad, deflection);
-  const auto reversed = orientFaces(cad, mesh);
-  auto uses = sideUses(cad, mesh);
-  auto features =
-      featureEdges(cad, mesh, uses, reversed, options.features, kShortestEdge * options.edgeLength);
-  divideInnerEdges(cad, mesh, features);
-  uses = sideUses(cad, mesh);
-  return cutRegions(cad, mesh, uses, features, featureVertices(cad, mesh, options.features), reversed);
+struct Cut {
+  std::shared_ptr<const WeldedShape> shape;
+  FeatureEdges features;
+  CutModel model;
+};
+
+Cut cutIntoRegions(CadModel cad, double deflection, const TessellateOptions& options) {
+  auto shape = std::make_shared<WeldedShape>(WeldedShape{std::move(cad), {}, {}, {}, {}});
+  shape->mesh = weldedMesh(shape->cad, deflection);
+  shape->reversed = orientFaces(shape->cad, shape->mesh);
+  shape->uses = sideUses(shape->cad, shape->mesh);
+  auto features = featureEdges(shape->cad, shape->mesh, shape->uses, shape->reversed, options.features,
+                               kShortestEdge * options.edgeLength);
+  divideInnerEdges(shape->cad, shape->mesh, features);
+  shape->uses = sideUses(shape->cad, shape->mesh);
+  shape->points = featureVertices(shape->cad, shape->mesh, options.features);
+  std::vector<int> triangles(shape->mesh.triangles.size());
+  std::iota(triangles.begin(), triangles.end(), 0);
+  auto model = cutRegions(*shape, features, triangles);
+  return {std::move(shape), std::move(features), std::move(model)};
 }
 
 /// BRepMesh cannot triangulate some faces at one deflection that it can at another. Since the true surface is
@@ -49,18 +59,18 @@ CutModel cutIntoRegions(const CadModel& cad, double deflection, const Tessellate
 /// is passed on.
 /// Loose faces that sewing joins to something that is no surface are sewn across narrower gaps, then left
 /// apart.
-CutModel regionsOf(const Shape& shape, double deflection, const TessellateOptions& options,
-                   const Progress& progress) {
+Cut regionsOf(const Shape& shape, double deflection, const TessellateOptions& options,
+              const Progress& progress) {
   std::optional<Error> complaint;
   for (const double gap : {kSewnGap, kNarrowGap, 0.0}) {
     bool sewn = false;
     for (const double coarser : kDeflectionSteps) {
       progress.check();
-      const CadModel cad = cadModel(shape, gap);  // anew: its triangulation is kept with it
+      CadModel cad = cadModel(shape, gap);  // anew: its triangulation is kept with it
       sewn = cad.sewn;
       try {
-        CutModel cut = cutIntoRegions(cad, coarser * deflection, options);
-        cut.model.keptApart = gap == 0;
+        Cut cut = cutIntoRegions(std::move(cad), coarser * deflection, options);
+        cut.model.model.keptApart = gap == 0;
         return cut;
       } catch (const Error& error) {
         if (error.kind() != Error::Kind::Input || error.stage() == "options") throw;
@@ -79,14 +89,26 @@ void divideSlits(const CutModel& cut, std::vector<std::vector<double>>& division
       division[c].insert(division[c].begin() + 1, 0.5 * (division[c].front() + division[c].back()));
 }
 
-/// Marks the aligned edges of the boundaries, and the vertices that were wanted on curves.
-void markConstraints(CutModel& cut, const std::vector<CurvePoint>& points) {
-  for (auto& region : cut.model.regions) {
-    for (const auto e : region.mesh.edges())
-      if (const auto& curve = region.edgeCurve[e.idx()]; curve && cut.aligned[curve->index])
-        region.aligned.push_back(e);
-    markCurvePoints(region, points);
+/// What the model's regions were cut from. The model's curves are those of the cut one that are not inner.
+std::shared_ptr<const CadOrigin> originOf(const Cut& cut, std::vector<std::vector<double>> division,
+                                          const TessellateOptions& options) {
+  CadOrigin origin{cut.shape,
+                   cut.features,
+                   {options.edgeLength, options.tolerance},
+                   options.features.quadLength,
+                   cut.model.triangles,
+                   std::vector<std::vector<double>>(cut.shape->cad.edges.size()),
+                   std::vector<std::optional<CurveId>>(cut.shape->cad.edges.size()),
+                   std::vector<std::optional<CornerId>>(cut.shape->cad.vertices.size())};
+  int curves = 0;
+  for (size_t c = 0; c < division.size(); ++c) {
+    const int edge = cut.model.cadEdge[c];
+    origin.division[edge] = std::move(division[c]);
+    if (!cut.model.inner[c]) origin.curve[edge] = CurveId{curves++};
   }
+  for (size_t c = 0; c < cut.model.cadVertex.size(); ++c)
+    origin.corner[cut.model.cadVertex[c]] = CornerId{int(c)};
+  return std::make_shared<const CadOrigin>(std::move(origin));
 }
 
 }  // namespace
@@ -100,18 +122,15 @@ Model tessellate(const Shape& shape, const TessellateOptions& options, const Pro
     const double diagonal = shape.diagonal();
     const double deflection = std::clamp(std::min(options.tolerance, 0.1 * options.edgeLength),
                                          kFinestDeflection * diagonal, kCoarsestDeflection * diagonal);
-    CutModel cut = regionsOf(shape, deflection, options, progress);
-    const auto curvePoints = pinPoints(cut.model, options.features);
+    Cut cut = regionsOf(shape, deflection, options, progress);
+    const auto curvePoints = pinPoints(cut.model.model, options.features);
     const RemeshOptions wanted{options.edgeLength, options.tolerance};
-    auto division = divideCurves(cut.model, wanted);
+    auto division = divideCurves(cut.model.model, wanted);
     divideAt(curvePoints, division);
-    divideSlits(cut, division);
-    for (size_t r = 0; r < cut.model.regions.size(); ++r)
-      remesh(cut.model.regions[r], cut.model, division, cut.creases[r], wanted, progress);
-    markConstraints(cut, curvePoints);
-    Model model = joinRegions(cut.model, cut.inner, cut.surfaces);
-    model.keptApart = cut.model.keptApart;
-    for (auto& region : model.regions) splitConstrainedTriangles(region);
+    divideSlits(cut.model, division);
+    Model model = meshedRegions(cut.model, curvePoints, division, wanted, progress);
+    model.keptApart = cut.model.model.keptApart;
+    model.origin = originOf(cut, std::move(division), options);
     return model;
   });
 }

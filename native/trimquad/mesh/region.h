@@ -55,20 +55,24 @@ struct ModelCurve {
   std::string name;  ///< "Edge3" for a CAD edge, "loop:2" for a boundary loop of a mesh
 };
 
-/// A whole input, cut into regions. Curves and corners are shared: where two regions meet, the vertices of both
-/// along the curve are at the same places in the same number.
+struct CadOrigin;  // brep/cad_origin.h
+
+/// A whole input, cut into regions. Curves and corners are shared: where two regions meet, the vertices of
+/// both along the curve are at the same places in the same number.
 struct Model {
   std::vector<Region> regions;
-  std::vector<ModelCurve> curves;             ///< by CurveId
-  std::vector<Eigen::Vector3d> corners;       ///< by CornerId
+  std::vector<ModelCurve> curves;        ///< by CurveId
+  std::vector<Eigen::Vector3d> corners;  ///< by CornerId
   struct Shell {
     std::vector<int> regions;
-    std::optional<int> solid;                 ///< which solid of the input the shell bounds
+    std::optional<int> solid;  ///< which solid of the input the shell bounds
   };
   std::vector<Shell> shells;
-  double diagonal = 0;                        ///< of the bounding box, model units
+  double diagonal = 0;  ///< of the bounding box, model units
   /// Whether loose faces of a CAD shape touch along edges, but make up no surface when joined there.
   bool keptApart = false;
+  /// Of a CAD shape: what it was cut from, for cutting regions further (brep/region_parts.h).
+  std::shared_ptr<const CadOrigin> origin = nullptr;
 };
 
 }  // namespace trimquad

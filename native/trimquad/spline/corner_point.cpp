@@ -59,6 +59,28 @@ std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p
   return at;
 }
 
+/// The three sheets that cross most steeply, then the two that do. Curves in which these cut each other then
+/// end in one point, whichever sheets are tangent to them.
+std::vector<std::vector<int>> steepestFirst(const std::vector<const Sheet*>& sheets,
+                                            const std::vector<Eigen::Vector2d>& at) {
+  std::vector<Eigen::Vector3d> normals;
+  for (std::size_t i = 0; i < sheets.size(); ++i) normals.push_back(normal(sheets[i]->jet(at[i])));
+  std::vector<int> pair, triple;
+  double steepest = 0, largest = 0;
+  for (int i = 0; i < int(sheets.size()); ++i)
+    for (int j = i + 1; j < int(sheets.size()); ++j) {
+      const Eigen::Vector3d across = normals[i].cross(normals[j]);
+      if (across.norm() > steepest) steepest = across.norm(), pair = {i, j};
+      for (int k = j + 1; k < int(sheets.size()); ++k)
+        if (const double volume = std::abs(across.dot(normals[k])); volume > largest)
+          largest = volume, triple = {i, j, k};
+    }
+  std::vector<std::vector<int>> chosen;
+  if (!triple.empty()) chosen.push_back(triple);
+  if (!pair.empty()) chosen.push_back(pair);
+  return chosen;
+}
+
 }  // namespace
 
 CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
@@ -70,12 +92,18 @@ CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*
     corner.point += sheets[i]->jet(corner.at[i]).s / double(sheets.size());
   }
   if (sheets.size() == 1) return corner;
-  if (sheets.size() <= 3)
-    if (auto common = commonPoint(p, sheets, corner.at, reach)) {
-      corner.at = std::move(*common);
-      corner.point = sheets[0]->jet(corner.at[0]).s;
-      return corner;
-    }
+  for (const auto& chosen : steepestFirst(sheets, corner.at)) {
+    std::vector<const Sheet*> some;
+    std::vector<Eigen::Vector2d> at;
+    for (const int i : chosen) some.push_back(sheets[i]), at.push_back(corner.at[i]);
+    const auto common = commonPoint(p, some, std::move(at), reach);
+    if (!common) continue;
+    corner.point = some[0]->jet((*common)[0]).s;
+    for (std::size_t i = 0; i < sheets.size(); ++i)
+      corner.at[i] = sheets[i]->footPoint(corner.point, corner.at[i]);
+    for (std::size_t k = 0; k < chosen.size(); ++k) corner.at[chosen[k]] = (*common)[k];
+    return corner;
+  }
   for (std::size_t i = 0; i < sheets.size(); ++i)
     corner.at[i] = sheets[i]->footPoint(corner.point, corner.at[i]);
   return corner;

@@ -15,9 +15,10 @@ struct CornerPoint {
 };
 
 /// Where the sheets around a corner `p` of the model meet: the foot point of one sheet, the nearest point of
-/// the intersection curve of two, the common point of three (Newton). More than three, sheets that are nearly
-/// tangent or that meet nowhere within `reach` have no common point: then the mean of the foot points of `p`,
-/// and its own foot points. \param guess parameters near p, by sheet
+/// the intersection curve of two, the common point of three (Newton). More than three have none, nor have
+/// sheets that are nearly tangent: then that of the three which cross most steeply, else of the two, and its
+/// foot points on the others. Where these do not meet within `reach` either, the mean of the foot points of
+/// `p`, and its own foot points. \param guess parameters near p, by sheet
 CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
                         const std::vector<Eigen::Vector2d>& guess, double reach);
 

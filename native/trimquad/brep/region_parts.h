@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trimquad/base/progress.h"
+#include "trimquad/mesh/region.h"
+
+namespace trimquad {
+
+/// A region of a CAD model cut along smooth edges inside it.
+struct RegionParts {
+  /// The parts with the curves and corners that they end in; names and shells mean nothing.
+  Model model;
+  std::vector<std::vector<double>> division;  ///< by curve
+  std::vector<int> cadEdge;                   ///< by curve
+  std::vector<int> cadVertex;                 ///< by corner
+  std::vector<std::vector<int>> triangles;    ///< by part, of the welded mesh
+  std::vector<int> cut;                       ///< the CAD edges, ascending
+  std::vector<std::string> edges;             ///< their names
+};
+
+/// Cuts a region around the CAD faces that lie at `place` (model units), or along all edges between CAD faces
+/// where no place is given or the faces at that place are no part of their own. A region of one face only is
+/// opened along its seams. Edges that the region's boundary has already keep their division, so that the
+/// parts fit the neighbours; cuts that would separate nothing are not made. Feature points and aligned edges
+/// stay.
+///
+/// Returns nothing where there is nothing to cut, as in models that no CAD shape is behind. The model's
+/// region may have been refined since. Throws Error(Stage, "tessellate") where a part cannot be remeshed.
+std::optional<RegionParts> regionParts(const Model& model, int region,
+                                       const std::optional<Eigen::Vector3d>& place, const Progress& progress);
+
+/// The model with regions replaced by their parts, which come in the place of the whole: "region 3" becomes
+/// "region 3.1", "region 3.2". Curves and corners keep their numbers, new ones come last.
+/// \param parts by region
+Model withParts(const Model& model, const std::map<int, const RegionParts*>& parts);
+
+}  // namespace trimquad

@@ -1,0 +1,111 @@
+"""Regions of CAD models that fail as a whole are cut along smooth edges inside them."""
+import importlib
+import json
+import math
+
+import pytest
+import trimquad
+from trimquad.error import Error
+
+conversion = importlib.import_module("trimquad.convert")  # its function hides it
+
+
+def tube():
+    """Four planes and four cylinders around a box with rounded edges, open at both ends: one region."""
+    import FreeCAD  # noqa: F401  before Part
+    import Part
+
+    box = Part.makeBox(10, 8, 3)
+    upright = [e for e in box.Edges if abs(e.Vertexes[0].Z - e.Vertexes[-1].Z) > 1]
+    return [f for f in box.makeFillet(1, upright).Faces if f.BoundBox.ZLength > 1]
+
+
+ROUNDING = (1 - math.sqrt(0.5), 1 - math.sqrt(0.5), 1.5)
+
+
+@pytest.fixture
+def large_regions_fail(monkeypatch):
+    """Fits fail where a region is half of the tube or more, in one of its roundings."""
+    fit, area = conversion._fit, sum(f.Area for f in tube())
+
+    def refusing(item, *arguments, **ways):
+        if item.region.area > area / 2:
+            raise Error("stage", "fit", "refused", item.name, ROUNDING)
+        return fit(item, *arguments, **ways)
+
+    monkeypatch.setattr(conversion, "_fit", refusing)
+
+
+def converted(**options):
+    return trimquad.convert(tube(), trimquad.Options(quads=60, **options))
+
+
+def test_first_around_the_place_then_between_all_faces(large_regions_fail, tmp_path):
+    result = converted()
+    assert not result.failed
+    first, second = result.cuts
+    assert first.region == "region 0" and len(first.edges) == 2 and len(first.parts) == 2
+    assert second.region in first.parts and len(second.edges) == 6 and len(second.parts) == 7
+    assert len(result.regions) == 8
+    assert {r.cut_from for r in result.regions} == {"region 0", second.region}
+    shape = result.shape
+    assert shape.isValid() and len(shape.Faces) == 8
+    # Free are the two ends only.
+    uses = [len(shape.ancestorsOfType(e, type(shape.Faces[0]))) for e in shape.Edges]
+    free = sum(e.Length for e, count in zip(shape.Edges, uses) if count == 1)
+    assert set(uses) == {1, 2} and free == pytest.approx(2 * (2 * 8 + 2 * 6 + 2 * math.pi), rel=1e-3)
+
+    result.write(str(tmp_path))
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert [(cut["region"], cut["error"]["message"]) for cut in report["cuts"]] == [
+        ("region 0", "refused"), (second.region, "refused"),
+    ]
+    assert {r["name"] for r in report["regions"]} == set(first.parts + second.parts) - {second.region}
+    assert sum("'region 0'" in line and "2 of its inner edges" in line for line in result.warnings) == 1
+
+
+def test_results_do_not_depend_on_threads(large_regions_fail):
+    texts = []
+    for threads in (1, 3):
+        result = converted(threads=threads)
+        texts.append([result.shape.exportBrepToString()] + [r.quads.to_obj() for r in result.regions])
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize("features", ("align", "ignore"))
+def test_edges_that_are_to_lie_inside_are_not_cut(large_regions_fail, features):
+    result = converted(features=features)
+    assert [r.name for r in result.failed] == ["region 0"] and not result.cuts
+
+
+def test_a_failure_that_no_cut_cures_stays_one(monkeypatch):
+    def refusing(item, *_, **__):
+        raise Error("stage", "fit", "refused", item.name)
+
+    monkeypatch.setattr(conversion, "_fit", refusing)
+    result = converted()
+    assert len(result.cuts) == 1 and len(result.failed) == len(result.regions) == 8
+    assert result.shape is None
+
+
+def test_a_region_that_cannot_be_trimmed_is_cut(monkeypatch):
+    def refusing(item, charts, error, result, progress):
+        item.fitted, item.error = None, Error("stage", "fit", "refused", item.name)
+
+    native, whole = conversion.load(), []
+
+    def trim_model(model, *arguments):
+        if len(model.regions) == 1:
+            whole.append(model)
+            raise Error("stage", "fit", "trims cross", "region 0, Edge1")
+        return native.trim_model(model, *arguments)
+
+    class Native:
+        def __getattr__(self, name):
+            return trim_model if name == "trim_model" else getattr(native, name)
+
+    monkeypatch.setattr(conversion, "_refit", refusing)
+    monkeypatch.setattr(conversion, "load", Native)
+    result = converted()
+    assert len(whole) == 1 and len(result.cuts) == 1 and not result.failed
+    assert result.shape.isValid() and len(result.shape.Faces) == 8
