@@ -22,7 +22,7 @@ class JoinedSpace {
   std::vector<SplineSpace> charts;  ///< by chart of the layout
   /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
   /// quad^2 of surface.
-  double tangentWeight = 3;
+  double tangentWeight = 30;
   /// How far from a singularity narrow knot rectangles count in full towards fairness, quads.
   double stiffReach = 0.25;
 

@@ -119,7 +119,8 @@ Eigen::Vector2d LayoutSamples::regularised(int chart, const Eigen::Vector2d& x) 
     if (!(part > 0 && part < 1)) continue;
     const double near = (1 - part) * (1 - part);
     const double length = away.norm() * std::pow(part, (corner.exponent - 1) * near);
-    const Eigen::Vector2d along = away.normalized(), flat = flattened(along, corner.exponent);
+    const Eigen::Vector2d along = away.normalized();
+    const Eigen::Vector2d flat = flattens ? flattened(along, corner.exponent) : along;
     return corner.at + length * ((1 - near) * along + near * flat);
   }
   return x;
