@@ -42,7 +42,7 @@ BENCHMARK(leastSquares)
     ->MinTime(0.2);
 
 /// The whole fit of a sheet of n x n quads, nine triangle pairs each, to a tolerance in thousandths of a
-/// quad. One below the triangles' sagitta is met by following every triangle, with a pole for each and more.
+/// quad.
 void fitSheet(benchmark::State& state) {
   const int n = int(state.range(0)), cells = 3 * n;
   TriangleSoup soup;
@@ -75,7 +75,7 @@ BENCHMARK(fitSheet)
     ->Args({10, 20})
     ->Args({30, 20})
     ->Args({100, 20})
-    ->Args({100, 1})
+
     ->Unit(benchmark::kMillisecond)
     ->MinTime(0.2);
 

@@ -11,6 +11,7 @@
 #include "spline/analytic_region.h"
 #include "spline/fit_figures.h"
 #include "support/grid_maps.h"
+#include "trimquad/mesh/polyline_curve.h"
 #include "trimquad/spline/trim_model.h"
 
 #include <BRepCheck_Analyzer.hxx>
@@ -39,13 +40,14 @@ Eigen::Vector3d wave(double x, double y) {
   return {kMetre * std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), -std::sin(a) * std::sin(b)};
 }
 
-/// A star with a hole in it over 24 x 24 quads of z = sin x cos y.
-GridMap star() {
+/// A star with a hole in it over 24 x 24 quads of z = sin x cos y, its boundary zigzagging by `teeth` quads.
+GridMap star(double teeth) {
   constexpr int around = 120, rings = 24;
   samples::MappedSoup mapped;
   const auto at = [&](int i, int j) -> Eigen::Vector2d {
     const double a = 2 * std::numbers::pi * j / around, inner = 2.3, outer = 10.2 + 1.3 * std::cos(3 * a);
-    return (inner + (outer - inner) * i / rings) * Eigen::Vector2d(std::cos(a), std::sin(a));
+    const double zigzag = i == 0 || i == rings ? (j % 2 ? teeth : -teeth) : 0;
+    return (zigzag + inner + (outer - inner) * i / rings) * Eigen::Vector2d(std::cos(a), std::sin(a));
   };
   const auto vertex = [&](int i, int j) { return i * around + j % around; };
   for (int i = 0; i <= rings; ++i)
@@ -67,15 +69,25 @@ struct Trimmed {
   FittedSurface fitted;
   test::FitFigures figures;
   SplineModel model;
+  std::vector<PolylineCurve> boundary;  ///< of the mesh
 };
 
-Trimmed trimmedStar() {
-  const GridMap flat = star();
+/// Parameter of the polyline's vertex nearest to a point.
+double nearest(const PolylineCurve& polyline, const Eigen::Vector3d& p) {
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < polyline.points().size(); ++i)
+    if ((polyline.points()[i] - p).norm() < (polyline.points()[best] - p).norm()) best = i;
+  return polyline.parameters()[best];
+}
+
+Trimmed trimmedStar(double tolerance = 3e-4 * kMetre, double teeth = 0) {
+  const GridMap flat = star(teeth);
   Model model = meshModel(sample::soupOf(flat.mesh), {}, Progress());
   model.regions[0].surface = std::make_shared<GraphSurface>(wave);
   const GridMap map = sample::mapOn(model.regions[0], flat);
   Trimmed result;
-  const double tolerance = 3e-4 * kMetre;
+  for (const auto& curve : model.curves)
+    result.boundary.push_back(dynamic_cast<const PolylineCurve&>(*curve.curve));
   result.fitted = fitSurface(model.regions[0], map,
                              {.tolerance = tolerance, .bisections = {{0}, {0}, {2}, {2}}}, Progress());
   result.figures = test::figures(result.fitted, model.regions[0], map);
@@ -135,6 +147,35 @@ TEST(TrimmedShell, starOfSeveralPatchesIsWatertightBeforeAndAfterStep) {
     EXPECT_EQ(freeWires(s->topology()), 2);
     EXPECT_EQ(s->faceCount(), int(star.model.faces.size()));
   }
+}
+
+TEST(TrimmedShell, aJaggedOutlineIsSmoothedWithinTheTolerance) {
+  const double tolerance = 4, teeth = 0.006;  // millimetres; quads of 250 mm
+  const auto star = trimmedStar(tolerance, teeth);
+  std::vector<int> uses(star.model.edges.size(), 0);
+  for (const auto& face : star.model.faces)
+    for (const auto& loop : face.loops)
+      for (const auto& coedge : loop) ++uses[coedge.edge.index];
+  std::size_t spans = 0;
+  double farthest = 0;
+  for (const auto& face : star.model.faces)
+    for (const auto& loop : face.loops)
+      for (const auto& coedge : loop) {
+        if (uses[coedge.edge.index] != 1) continue;
+        spans += coedge.curve.poles.size() - coedge.curve.degree;
+        const auto& curve = star.model.edges[coedge.edge.index].curve;
+        for (int i = 0; i <= 200; ++i) {
+          const Eigen::Vector3d p = curve.point(curve.first() + (curve.last() - curve.first()) * i / 200);
+          double off = HUGE_VAL;
+          for (const auto& polyline : star.boundary)
+            off = std::min(off, (polyline.point(polyline.closest(p, nearest(polyline, p))) - p).norm());
+          farthest = std::max(farthest, off);
+        }
+      }
+  // Of 240 mesh edges.
+  // The aim is the tolerance. The same place is as far away where edges follow every tooth.
+  EXPECT_LE(farthest, 28);
+  EXPECT_LE(spans, 100u);
 }
 
 TEST(TrimmedShell, starBecomesAThickSolid) {
