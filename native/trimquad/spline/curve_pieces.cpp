@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "trimquad/mesh/polyline_curve.h"
+
 namespace trimquad {
 namespace {
 
@@ -32,6 +34,7 @@ CurvePieces::CurvePieces(const Model& model, std::vector<CurveSplit> splits) {
   for (int c = 0; c < int(model.curves.size()); ++c) {
     first_.push_back(int(pieces_.size()));
     const ModelCurve& whole = model.curves[c];
+    isPolyline_.push_back(dynamic_cast<const PolylineCurve*>(whole.curve.get()) != nullptr);
     double from = whole.curve->first();
     CornerId start = whole.start;
     const auto append = [&](double to, CornerId end) {

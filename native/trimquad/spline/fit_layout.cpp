@@ -18,6 +18,10 @@ constexpr int kMaxPoles = 200000;
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
 constexpr double kTangentGivesWay = 0.1;
+/// Tolerance under which the parameters' bends within the sectors of a singularity count, quads.
+constexpr double kFine = 0.01;
+/// Radians between the surfaces next to singularities that weigh as much as a deviation by the tolerance.
+constexpr double kKink = 2e-3;
 /// Knots at these distances from singularities, where the surfaces bend from one sector's shape to the
 /// grid's.
 constexpr double kKnotsAround[] = {1, 2};
@@ -82,6 +86,8 @@ class LayoutFit : public FitRounds {
     for (int c = 0; c < int(layout.charts.size()); ++c)
       space_.charts.push_back(initialSpace(c, options.degree));
     setScale(surfaceArea(map.mesh), source_.mapArea(), source_.triangleExtent());
+    source_.flattens = toleranceInQuads_ < kFine;
+    space_.tangentWeight = std::min(space_.tangentWeight, std::pow(toleranceInQuads_ / kKink, 2));
   }
 
  private:

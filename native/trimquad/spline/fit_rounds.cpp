@@ -59,10 +59,10 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
 
 void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
   const double quad = std::sqrt(surfaceArea / mapArea);
-  const double inQuads = tolerance_ / quad;
+  toleranceInQuads_ = tolerance_ / quad;
   // With the energy as an integral over the same plane as the squared distance, the deviation that it costs
   // is below 3 % of the tolerance times the surface's bending per quad.
-  fairness_.withData = std::max(1e-3 * inQuads * inQuads, 1e-13);
+  fairness_.withData = std::max(1e-3 * toleranceInQuads_ * toleranceInQuads_, 1e-13);
   fairness_.withoutData = std::max(1e3 * fairness_.withData, 1e-9);
   narrowest_ = std::exp2(std::floor(std::log2(extent / 16)));
 }

@@ -76,6 +76,7 @@ class FitRounds {
   std::vector<FitPlace> failing_, turned_;
   Fairness fairness_;
   double narrowest_ = 0;  ///< knot interval, quads
+  double toleranceInQuads_ = 0;
 
  private:
   struct State {

@@ -99,6 +99,15 @@ std::vector<double> breaksAlong(const SplineSpace& space, const Layout::Border& 
   return result;
 }
 
+/// Width of the side's knot intervals next to the border, across it.
+double widthBeside(const SplineSpace& space, const Layout::Border& border, int side) {
+  const int axis = border.axis(side), other = 1 - axis;
+  const SplineLine& line = axis == 0 ? space.u : space.v;
+  // The first chart lies to the left.
+  const bool above = (border.end[side][other] > border.start[side][other]) == ((axis == 1) == (side == 0));
+  return line.width(line.spanOf(border.start[side][axis] + (above ? kSame : -kSame)));
+}
+
 }  // namespace
 
 std::vector<int> JoinedSpace::offsets() const {
@@ -194,14 +203,18 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
                ends.end());
     return ends;
   };
+  // Derivatives across narrow spans are large numbers: measured by the step to the next poles instead, all
+  // conditions are of one size, and their penalties leave the data their digits.
+  const double step = std::min(widthBeside(*space[0], border, 0), widthBeside(*space[1], border, 1));
   const auto sameSplines = [&](double from, double to, int order) {
     if (!(to - from > kSame)) return;
+    const double scale = order == 1 ? step * step : 1;
     const auto knots = SplineLine{degree, false, merged(from, to)}.knots();
     std::vector<double> arguments(degree);
     for (int i = 0; i + degree + 1 < int(knots.size()); ++i) {
       const int span = knotSpan(knots, degree, (knots[i] + knots[i + degree + 1]) / 2);
       const double at = (knots[span] + knots[span + 1]) / 2;
-      Condition equal{{}, kExactWeight * (knots[i + degree + 1] - knots[i]) / (degree + 1), true};
+      Condition equal{{}, kExactWeight * scale * (knots[i + degree + 1] - knots[i]) / (degree + 1), true};
       for (int k : {0, 1}) {
         const Eigen::Vector2d &along = k == 0 ? along0 : along1, &over = k == 0 ? over0 : over1;
         const int axis = 1 - border.axis(k);
@@ -236,7 +249,7 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
   for (const bool start : {true, false})
     if ((start ? reachStart : reachEnd) > 0) {
       Condition flat = acrossAt(start ? 0 : length);
-      flat.weight = kExactWeight;
+      flat.weight = kExactWeight * step * step;
       flat.exact = true;
       conditions.push_back(std::move(flat));
     }

@@ -14,6 +14,16 @@ constexpr double kSingularReach = 2;
 /// How far from one the samples are denser, knot intervals.
 constexpr double kFineIntervals = 2;
 
+/// Where the direction `along` goes in the plane around a singularity, in which sectors of `exponent` quarter
+/// turns each lie evenly: in terms of its sector's two sides. What is a flat surface there becomes linear.
+Eigen::Vector2d flattened(const Eigen::Vector2d& along, double exponent) {
+  const double sector = exponent * M_PI / 2;
+  if (!(sector < M_PI)) return along;
+  const double angle = exponent * std::atan2(std::abs(along[1]), std::abs(along[0]));
+  return {std::copysign(std::sin(sector - angle) / std::sin(sector), along[0]),
+          std::copysign(std::sin(angle) / std::sin(sector), along[1])};
+}
+
 }  // namespace
 
 LayoutSamples::LayoutSamples(const Region& region, const GridMap& map, const Layout& layout,
@@ -106,8 +116,12 @@ Eigen::Vector2d LayoutSamples::regularised(int chart, const Eigen::Vector2d& x) 
   for (const auto& corner : singular_[chart]) {
     const Eigen::Vector2d away = x - corner.at;
     const double part = away.norm() / corner.reach;
-    if (part > 0 && part < 1)
-      return corner.at + away * std::pow(part, (corner.exponent - 1) * (1 - part) * (1 - part));
+    if (!(part > 0 && part < 1)) continue;
+    const double near = (1 - part) * (1 - part);
+    const double length = away.norm() * std::pow(part, (corner.exponent - 1) * near);
+    const Eigen::Vector2d along = away.normalized();
+    const Eigen::Vector2d flat = flattens ? flattened(along, corner.exponent) : along;
+    return corner.at + length * ((1 - near) * along + near * flat);
   }
   return x;
 }

@@ -26,6 +26,10 @@ class LayoutSamples {
   double mapArea() const { return area_; }           ///< quads^2
   double triangleExtent() const { return extent_; }  ///< side of a small triangle's image, quads
 
+  /// Whether directions around singularities are spread so that a flat surface there has linear parameters:
+  /// for tolerances so fine that it is flat within them.
+  bool flattens = false;
+
  private:
   using Corners = std::array<Eigen::Vector2d, 3>;
   Corners corners(FaceHandle f, const Transition& toChart = {}) const;

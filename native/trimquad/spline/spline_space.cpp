@@ -5,12 +5,15 @@
 #include <cmath>
 
 #include "trimquad/base/error.h"
+#include "trimquad/base/sparse_solver.h"
 #include "trimquad/spline/block_cholesky.h"
 
 namespace trimquad {
 namespace {
 
 constexpr int kMaxLocal = kMaxSplineDegree + 1;
+/// From this many unknowns on a line of blocks, sparse elimination costs less than the full band.
+constexpr int kLargestBlock = 300;
 
 /// Where the unknowns stand in the linear system: whole lines of poles one after the other, along the
 /// direction in which blocks of neighbouring lines are smaller. A closed direction is folded up (0, n - 1, 1,
@@ -50,10 +53,12 @@ struct LocalUnknowns {
       }
   }
 
-  void add(const Eigen::MatrixXd& local, BlockCholesky& matrix) const {
+  /// Calls add(i, j, value) for the entries on and below the diagonal.
+  template <class Add>
+  void forEachEntry(const Eigen::MatrixXd& local, const Add& add) const {
     for (int y = 0; y < count; ++y)
       for (int x = 0; x < count; ++x)
-        if (index[x] >= index[y]) matrix.add(index[x], index[y], local(x, y));
+        if (index[x] >= index[y]) add(index[x], index[y], local(x, y));
   }
 };
 
@@ -213,19 +218,34 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
                                                        const Fairness& fairness,
                                                        const Progress& progress) const {
   const Numbering number(*this);
-  BlockCholesky matrix(poles(), number.blockSize);
   Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(poles(), 3);
   // Rounding is relative to the coordinates, so they are taken from the middle of the data.
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const auto& d : data) middle += d.point / double(data.size());
-  forEachRectangle(data, fairness, middle, &progress,
-                   [&](int i, int j, const auto& local, const auto& localRhs) {
-                     const LocalUnknowns unknowns(*this, number, i, j);
-                     unknowns.add(local, matrix);
-                     for (int x = 0; x < unknowns.count; ++x) rhs.row(unknowns.index[x]) += localRhs.row(x);
-                   });
-  if (!matrix.factorize(progress)) return {};
-  matrix.solveInPlace(rhs);
+  const auto assemble = [&](const auto& add) {
+    forEachRectangle(data, fairness, middle, &progress,
+                     [&](int i, int j, const auto& local, const auto& localRhs) {
+                       const LocalUnknowns unknowns(*this, number, i, j);
+                       unknowns.forEachEntry(local, add);
+                       for (int x = 0; x < unknowns.count; ++x) rhs.row(unknowns.index[x]) += localRhs.row(x);
+                     });
+  };
+  if (number.blockSize <= kLargestBlock) {
+    BlockCholesky matrix(poles(), number.blockSize);
+    assemble([&](int i, int j, double value) { matrix.add(i, j, value); });
+    if (!matrix.factorize(progress)) return {};
+    matrix.solveInPlace(rhs);
+  } else {
+    std::vector<Eigen::Triplet<double>> entries;
+    assemble([&](int i, int j, double value) { entries.emplace_back(i, j, value); });
+    Eigen::SparseMatrix<double> matrix(poles(), poles());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    entries = {};
+    SparseSolver solver("fit");
+    progress.check();
+    if (!solver.tryFactorize(matrix)) return {};
+    rhs = solver.solve(rhs);
+  }
   rhs.rowwise() += middle.transpose();
   return surfaceOf(*this, number, rhs);
 }

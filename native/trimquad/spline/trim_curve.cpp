@@ -125,25 +125,28 @@ class EndPull {
 };
 
 /// The smooth curve on the sheet that follows the sampled curve, from the side's start to its end.
-PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSide& side, double tolerance,
-                      const Progress& progress) {
+PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSide& side,
+                      const CurveCloseness& closeness, const Progress& progress) {
+  const double tolerance = closeness.onSheet, inSpace = closeness.inSpace;
   const auto& feet = sampled.foot[sideIndex];
   const EndPull start(*side.sheet, feet.front(), side.start, tolerance),
       end(*side.sheet, feet.back(), side.end, tolerance);
   const double first = sampled.s.front(), last = sampled.s.back();
-  const auto sample = [&](double s, double t, const Eigen::Vector2d& foot) {
+  const auto sample = [&](double s, double t, const Eigen::Vector3d& p, const Eigen::Vector2d& foot) {
     const Eigen::Vector2d x = foot + start.at(s - first, last - first) + end.at(last - s, last - first);
-    return CurveSample<2>{s, t, x, metric(*side.sheet, x)};
+    const double off = (side.sheet->jet(foot).s - p).norm();
+    const double allowed = std::max(tolerance, std::sqrt(std::max(0.0, inSpace * inSpace - off * off)));
+    return CurveSample<2>{s, t, x, metric(*side.sheet, x) * (tolerance / allowed)};
   };
   std::vector<CurveSample<2>> samples;
   for (std::size_t i = 0; i < sampled.s.size(); ++i)
-    samples.push_back(sample(sampled.s[i], sampled.t[i], feet[i]));
+    samples.push_back(sample(sampled.s[i], sampled.t[i], sampled.point[i], feet[i]));
   samples.front().point = side.start;
   samples.back().point = side.end;
   const auto between = [&](const CurveSample<2>& p, const CurveSample<2>& q) {
     const double t = (p.t + q.t) / 2;
-    return sample((p.s + q.s) / 2, t,
-                  side.sheet->footPoint(sampled.curve->curve->point(t), (p.point + q.point) / 2));
+    const Eigen::Vector3d point = sampled.curve->curve->point(t);
+    return sample((p.s + q.s) / 2, t, point, side.sheet->footPoint(point, (p.point + q.point) / 2));
   };
   return located(side, sampled, [&] {
     return fitCurve<2>(samples, 3, tolerance, SampleParameters::Sliding, between, progress);
@@ -190,10 +193,10 @@ SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& 
   return sampled;
 }
 
-std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side, double tolerance,
-                                const Progress& progress) {
+std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side,
+                                const CurveCloseness& closeness, const Progress& progress) {
   // The side is the only one that this edge is for, whichever place it has among the curve's sides.
-  const PlaneCurve whole = planeCurve(sampled, 0, side, tolerance, progress);
+  const PlaneCurve whole = planeCurve(sampled, 0, side, closeness, progress);
   std::vector<double> cuts;
   appendSeamCrossings(
       *side.sheet, [&](double s) { return whole.point(s); }, whole.first(), whole.last(), cuts);
@@ -296,9 +299,9 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
 }
 
 std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<SheetSide>& sides,
-                                 double tolerance, const Progress& progress) {
+                                 double closeness, const Progress& progress) {
   const Sheet &sheetA = *sides[0].sheet, &sheetB = *sides[1].sheet;
-  const PlaneCurve wholeA = planeCurve(sampled, 0, sides[0], tolerance, progress);
+  const PlaneCurve wholeA = planeCurve(sampled, 0, sides[0], {closeness, closeness}, progress);
   const auto guessB = [&](double s) {
     const auto next = std::clamp(std::lower_bound(sampled.s.begin(), sampled.s.end(), s),
                                  sampled.s.begin() + 1, sampled.s.end() - 1);
@@ -322,7 +325,7 @@ std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<
       std::max((samples.front().metric * (samples.front().point - sampleB(samples.front().s).point)).norm(),
                (samples.back().metric * (samples.back().point - sampleB(samples.back().s).point)).norm());
   const PlaneCurve wholeB = located(sides[1], sampled, [&] {
-    return fitCurve<2>(samples, 3, std::max(tolerance / 20, 1.1 * offset), SampleParameters::Fixed, between,
+    return fitCurve<2>(samples, 3, std::max(closeness / 20, 1.1 * offset), SampleParameters::Fixed, between,
                        progress);
   });
   std::vector<double> cuts;

@@ -42,10 +42,16 @@ struct TrimPiece {
   double gap;                       ///< largest distance between the curve and its images on the sheets
 };
 
-/// Pieces of the edge of one sheet, in order: they follow the model curve within `tolerance` as seen on the
-/// sheet, start and end in `side.start` and `side.end`, and are cut wherever they cross the sheet's seam.
-std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side, double tolerance,
-                                const Progress& progress);
+/// How far an edge may be from its model curve, model units: everywhere as far as `onSheet`, as seen on the
+/// sheet; where that is more, as far as `inSpace`, the curve's distance from the sheet included.
+struct CurveCloseness {
+  double onSheet, inSpace;
+};
+
+/// Pieces of the edge of one sheet, in order: they follow the model curve closely enough, start and end in
+/// `side.start` and `side.end`, and are cut wherever they cross the sheet's seam.
+std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side,
+                                const CurveCloseness& closeness, const Progress& progress);
 
 /// The curve in which two sheets cut each other along a model curve; null where they are too nearly tangent.
 std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
@@ -61,6 +67,6 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
 /// Pieces of an edge on the first side's sheet, which the second sheet only touches within the gap: for
 /// sheets that are nearly tangent.
 std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<SheetSide>& sides,
-                                 double tolerance, const Progress& progress);
+                                 double closeness, const Progress& progress);
 
 }  // namespace trimquad

@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kSmallestTolerance = 1e-7;
 constexpr double kSheetSlack = 0.5;  ///< quads
+/// Parts of the tolerance within which edges follow their curves, as seen on the sheet; and chains of mesh
+/// edges in space, so that their teeth are smoothed.
+constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
 
@@ -61,9 +64,8 @@ class ModelTrimmer {
     placeCorners();
   }
 
-  /// \param closeness by region: how far free edges may be from their curves as seen on the sheet, model
-  /// units
-  SplineModel trim(const std::vector<double>& closeness) const;
+  /// \param tolerances by region: how far free edges may be from their curves, model units
+  SplineModel trim(const std::vector<double>& tolerances) const;
 
  private:
   void makeSheets();
@@ -374,7 +376,7 @@ PieceLoop ModelTrimmer::borderPiece(int region, const Layout::Stretch& stretch,
            forward ? edge.edge.end : edge.edge.start}};
 }
 
-SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
+SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
   SplineModel result;
   for (const auto& vertex : vertices_) result.vertices.push_back({vertex.point, kSmallestTolerance});
   std::map<const BoundaryRun*, std::vector<LoopPiece>> pieces;
@@ -409,15 +411,18 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& closeness) const {
                           vertices_[groupOf(*a.run, a.run->end)].point, progress_);
       }
       if (!edge) {
-        const double near = std::min(closeness[a.run->region], closeness[b.run->region]);
+        const double near = kCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
         edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
         result.looseEdges += int(edge->size());
       }
       addEdges(*edge, {&a, &b});
     } else {
-      for (std::size_t k = 0; k < curve.sides.size(); ++k)
-        addEdges(freeEdge(curve.sampled[k], curve.sides[k], closeness[curve.sides[k].run->region], progress_),
-                 {&curve.sides[k]});
+      for (std::size_t k = 0; k < curve.sides.size(); ++k) {
+        const double most = tolerances[curve.sides[k].run->region], onSheet = kCloseness * most;
+        const CurveCloseness closeness{onSheet,
+                                       curvePieces_->isPolyline(id) ? kChainCloseness * most : onSheet};
+        addEdges(freeEdge(curve.sampled[k], curve.sides[k], closeness, progress_), {&curve.sides[k]});
+      }
     }
   }
 
@@ -519,10 +524,10 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
                       const Progress& progress) {
   TRIMQUAD_ASSERT(maps.size() == model.regions.size() && fitted.size() == model.regions.size());
   const ModelTrimmer trimmer(model, fitted, tolerance, progress);
-  std::vector<double> closeness(model.regions.size(), tolerance / 4);
+  std::vector<double> tolerances(model.regions.size(), tolerance);
   constexpr int maxAttempts = 3;
   for (int attempt = 1;; ++attempt) {
-    SplineModel result = trimmer.trim(closeness);
+    SplineModel result = trimmer.trim(tolerances);
     bool clean = true;
     for (const auto& face : result.faces) {
       const auto crossing = loopCrossing(face);
@@ -532,7 +537,7 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
         throw stageError("fit",
                          "trimming curves cross each other on the fitted surface; use a smaller tolerance",
                          model.regions[face.region].name, face.surface.point((*crossing)[0], (*crossing)[1]));
-      closeness[face.region] /= 8;
+      tolerances[face.region] /= 8;
     }
     if (clean) return result;
   }

@@ -73,5 +73,53 @@ TEST(JoinedSpace, bordersAgreeToRoundingAcrossHolesWhateverTheKnotsOfBothSides) 
   }
 }
 
+/// Root mean square of the distances from the data.
+double residual(const std::vector<SplineSurface>& surfaces, const std::vector<std::vector<Datum>>& data) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t c = 0; c < data.size(); ++c)
+    for (const auto& d : data[c]) {
+      sum += (surfaces[c].point(d.parameter[0], d.parameter[1]) - d.point).squaredNorm();
+      ++count;
+    }
+  return std::sqrt(sum / count);
+}
+
+TEST(JoinedSpace, narrowSpansBesideBordersLeaveTheDataTheirDigits) {
+  const GridMap map = samples::gridMapOf(samples::wrapped(36, 24, 0.5, 0.5, true, {0.25, 0.25}));
+  const Layout charts = layout(map, {}, Progress());
+  // Periodic as the torus is: 18 by 12 quads.
+  const auto wave = [](const Eigen::Vector2d& x) {
+    const double a = 2 * M_PI * x[0] / 18, b = 2 * M_PI * x[1] / 12;
+    return Eigen::Vector3d(std::cos(a), std::cos(b), std::sin(a + b));
+  };
+  std::vector<std::vector<Datum>> data;
+  for (const auto& chart : charts.charts) {
+    auto& own = data.emplace_back();
+    for (double u = chart.low[0] + 0.05; u < chart.high[0]; u += 0.1)
+      for (double v = chart.low[1] + 0.05; v < chart.high[1]; v += 0.1)
+        own.push_back({{u, v}, wave({u, v}), 0.01});
+  }
+  const auto fitted = [&](double narrow) {
+    JoinedSpace space(charts);
+    for (const auto& chart : charts.charts) {
+      SplineLine lines[2];
+      for (int axis : {0, 1}) {
+        auto& at = lines[axis].breaks;
+        for (double x = chart.low[axis]; x <= chart.high[axis]; ++x) at.push_back(x);
+        if (narrow > 0) {
+          at.insert(at.begin() + 1, at.front() + narrow);
+          at.insert(at.end() - 1, at.back() - narrow);
+        }
+      }
+      space.charts.push_back({lines[0], lines[1]});
+    }
+    return residual(*space.leastSquares(data, {1e-11, 1e-9}, Progress()), data);
+  };
+  const double coarse = fitted(0);
+  EXPECT_LT(coarse, 1e-3);
+  for (const double narrow : {0.1, 0.01, 0.001}) EXPECT_LE(fitted(narrow), 1.01 * coarse) << narrow;
+}
+
 }  // namespace
 }  // namespace trimquad
