@@ -22,6 +22,10 @@ struct CrossField {
   /// Aligned edges of the region that the field is parallel to: all but those between which a map would
   /// collapse. Ascending.
   std::vector<EdgeHandle> aligned;
+  /// How much a map's distance to these directions weighs beside its distortion. Little: smooth directions
+  /// need not be those of any map, and one that insists on them bends its quads; much where the user gave
+  /// them.
+  double follow = 0.2;
 };
 
 /// Directions that a field should follow, up to quarter turns.

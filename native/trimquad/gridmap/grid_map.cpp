@@ -84,8 +84,8 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
   const MapTarget image = imageOf(seamless);
   const MapProblem problem{seamless.mesh,   seamless.seams,
                            seamless.target, startsOf({&image, &seamless.target, &seamless.conformalTarget}),
-                           seamless.index,  basis,
-                           "optimize"};
+                           seamless.index,  seamless.follow,
+                           basis,           "optimize"};
   const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis),
                                      StepBudget(thorough ? 1 : kBriefly), map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);

@@ -22,7 +22,7 @@ MapTarget imageOf(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::
 
 std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEnergy energy,
                                                  const std::vector<int>& index, const SeamBasis& basis,
-                                                 const Eigen::VectorXd& x, int& iterations,
+                                                 double follow, const Eigen::VectorXd& x, int& iterations,
                                                  SparseSolver& solver, StepBudget& budget,
                                                  const Progress& progress) {
   MapEnergy ahead = energy;
@@ -54,7 +54,7 @@ std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEne
     if (left == 0) return z;
     constexpr int kRelax = 3;
     for (int relax = 0; relax < kRelax; ++relax)
-      newtonStep(energy, basis, symmetricDirichlet, kFollow, true, solver, z);
+      newtonStep(energy, basis, symmetricDirichlet, follow, true, solver, z);
     step = 2 * length;
   }
   return std::nullopt;

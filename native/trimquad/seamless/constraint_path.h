@@ -12,10 +12,11 @@ namespace trimquad {
 /// for, by a Poisson solve and untangling. Returns z of the basis, or nothing where the steps become too
 /// small.
 /// \param energy  of the basis
+/// \param follow  weight of the distance to its target on the way, beside symmetric Dirichlet energy
 /// \param x  coordinates of the basis; all its equations hold but for constants
 std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEnergy energy,
                                                  const std::vector<int>& index, const SeamBasis& basis,
-                                                 const Eigen::VectorXd& x, int& iterations,
+                                                 double follow, const Eigen::VectorXd& x, int& iterations,
                                                  SparseSolver& solver, StepBudget& budget,
                                                  const Progress& progress);
 

@@ -83,6 +83,7 @@ CrossField refinedField(const SurfaceMesh& mesh, const RefinedMesh& refined, con
   result.index.resize(refined.mesh.n_vertices(), 0);
   result.loopTurns = field.loopTurns;
   result.aligned = refinedEdges(mesh, refined, field.aligned);
+  result.follow = field.follow;
   return result;
 }
 

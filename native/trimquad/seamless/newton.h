@@ -7,9 +7,6 @@
 
 namespace trimquad {
 
-/// Weight of the distance to the target beside symmetric Dirichlet energy.
-inline constexpr double kFollow = 1.0;
-
 /// One projected Newton step, with the unknowns `held` where they are, on `density` + follow * |J - 1|^2,
 /// with backtracking. Returns the relative decrease of the energy. \param keepInjective  stay within nine
 /// tenths of the step at which a first triangle collapses

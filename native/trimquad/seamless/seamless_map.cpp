@@ -122,6 +122,7 @@ struct Draft {
       for (auto& corner : map.conformalTarget[f]) corner *= scale[f];
     map.alignedSides = alignedSides(mesh, field.aligned, map.target);
     map.index = field.index;
+    map.follow = field.follow;
     map.aligned = field.aligned;
   }
 
@@ -144,7 +145,7 @@ struct Draft {
   MapProblem problem(const SeamBasis& basis) const {
     auto starts = startsOf({&map.target, &map.conformalTarget});
     if (hasConvexStart()) starts.resize(2);
-    return {mesh, map.seams, map.target, std::move(starts), map.index, basis, "seamless"};
+    return {mesh, map.seams, map.target, std::move(starts), map.index, map.follow, basis, "seamless"};
   }
 };
 
@@ -201,7 +202,7 @@ void keepOneToOne(const Draft& draft, SeamlessMap& map, const Progress& progress
   const auto& [mesh, field, unused] = draft;
   if ((!map.seams.outerLoop && !map.seams.tube) || !field.aligned.empty() || !overlaps(map, map.seams))
     return;
-  const double follow = map.seams.tube ? 0.0 : kFollow;
+  const double follow = map.seams.tube ? 0.0 : map.follow;
   SeamlessMap grown = map;
   grown.counters.scaffolded = true;
   grown.seams = withoutSeams(mesh, field, outerLoopOf(mesh, field));

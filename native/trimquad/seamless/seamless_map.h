@@ -42,7 +42,8 @@ struct SeamlessMap : Parametrization {
   MapTarget conformalTarget;  ///< scaled by conformalScale()
   std::vector<AlignedSide> alignedSides;
   std::vector<int>
-      index;  ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
+      index;          ///< by vertex: singularity index in quarter turns, cone angle (4 - index) * 90 degrees
+  double follow = 0;  ///< weight of the distance to the target beside the distortion, as CrossField has it
   MapCounters counters;
   /// Where edges of the region had to be halved: its mesh with these, which the map is of.
   std::optional<RefinedMesh> refined;

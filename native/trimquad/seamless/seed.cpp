@@ -21,6 +21,8 @@ constexpr double kReach = 40;
 /// What a field leaves of the work for the ones after it, at least.
 constexpr double kForOthers = 0.5;
 constexpr double kCurvatureWeight = 0.1, kGivenWeight = 1;
+/// CrossField::follow at full weight of the guidance, at which directions are wanted rather than smoothness.
+constexpr double kFollowGiven = 1;
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -95,7 +97,11 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   std::optional<Error> first;
   std::optional<Seed> with;
   for (const double reach : reaches) {
-    const auto field = [&] { return crossField(region, guidance, reach, progress); };
+    const auto field = [&] {
+      CrossField found = crossField(region, guidance, reach, progress);
+      found.follow = std::max(found.follow, kFollowGiven * std::min(1.0, reach / kReach));
+      return found;
+    };
     const double aside = budget.setAside(reach == reaches.back() ? 0 : kForOthers);
     const auto error = tryField(region, options.edgeLength, field, Effort::Full, budget, progress, result);
     budget.add(aside);

@@ -203,7 +203,7 @@ std::vector<MapStart> startsOf(const std::vector<const MapTarget*>& targets) {
 UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen::VectorXd>& nearby,
                             Effort effort, MapCounters& counters, StepBudget& budget,
                             const Progress& progress) {
-  const auto& [mesh, seams, target, starts, index, basis, stage] = problem;
+  const auto& [mesh, seams, target, starts, index, follow, basis, stage] = problem;
   const MapEnergy energy(mesh, target, basis);
   if (const auto flat = energy.heldFlat(); !flat.empty())
     throw stageError(stage, "the seams, aligned edges or integers around a triangle leave it no area",
@@ -222,8 +222,8 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
   if (effort == Effort::Easy && isHard) maps.reached.push_back(z);
   if (!maps.reached.empty() || maps.injective) return maps;
   if (nearby)
-    if (const auto moved = followConstraints(mesh, energy, index, basis, *nearby, counters.pathSteps, solver,
-                                             budget, progress);
+    if (const auto moved = followConstraints(mesh, energy, index, basis, follow, *nearby, counters.pathSteps,
+                                             solver, budget, progress);
         moved && isInjective(problem, energy, *moved)) {
       maps.injective = moved;
       return maps;
@@ -244,7 +244,7 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
 
 Eigen::VectorXd stubbornMap(const MapProblem& problem, const UntangledMaps& maps, Effort effort,
                             MapCounters& counters, StepBudget& budget, const Progress& progress) {
-  const auto& [mesh, seams, target, starts, index, basis, stage] = problem;
+  const auto& [mesh, seams, target, starts, index, follow, basis, stage] = problem;
   const MapEnergy energy(mesh, target, basis);
   if (effort == Effort::Full)
     if (const auto grown = grownMap(energy, mesh, seams, target, basis, poissonMap(mesh, target, basis))) {
@@ -266,7 +266,8 @@ void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counte
   SparseSolver solver(problem.stage);
   const int most = counters.convexStart ? 200 : 50;
   for (int i = 0; i < most; ++i) {
-    const double decrease = newtonStep(energy, problem.basis, symmetricDirichlet, kFollow, true, solver, z);
+    const double decrease =
+        newtonStep(energy, problem.basis, symmetricDirichlet, problem.follow, true, solver, z);
     ++counters.iterations;
     progress.report(0.5 + 0.5 * i / most);
     if (decrease < kConverged) break;

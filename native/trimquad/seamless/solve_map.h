@@ -40,6 +40,7 @@ struct MapProblem {
   const MapTarget& target;
   std::vector<MapStart> starts;
   const std::vector<int>& index;  ///< by vertex, singularity index; cone angles are (4 - index) * 90 degrees
+  double follow;                  ///< weight of the distance to the target beside symmetric Dirichlet energy
   const SeamBasis& basis;
   std::string stage;  ///< named in errors
 };
