@@ -1,6 +1,7 @@
 #include "trimquad/spline/border_edges.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace trimquad {
 namespace {
@@ -22,6 +23,49 @@ BorderLines::BorderLines(const Layout& layout, const Sheet* sheets)
 SheetLine BorderLines::line(int border, int side) const {
   const auto& b = layout_.borders[border];
   return {sheets_ + b.chart[side], b.start[side], (b.end[side] - b.start[side]) / b.length()};
+}
+
+double BorderLines::placeOnCurve(const End& end, const TrueCurve& curve, double t, double low,
+                                 double high) const {
+  const SheetLine lines[] = {line(end.border, 0), line(end.border, 1)};
+  struct Place {
+    double t;
+    Eigen::Vector2d guess[2];
+    double side;  ///< quads to the first chart's side of the border; negative on the other
+  };
+  // A sheet may end at the border: what lies beyond has its feet on the line, and lies on the other sheet.
+  const auto placeAt = [&](double at, const Place& near) {
+    Place place{at, {near.guess[0], near.guess[1]}, 0};
+    for (int side = 0; side < 2 && place.side == 0; ++side) {
+      const Eigen::Vector2d& along = lines[side].along;
+      const Eigen::Vector2d left(-along[1], along[0]);
+      place.guess[side] = lines[side].sheet->footPoint(curve.point(at), near.guess[side]);
+      place.side = left.dot(place.guess[side] - lines[side].start);
+    }
+    return place;
+  };
+  const Place start{t, {lines[0].at(endOf(end)), lines[1].at(endOf(end))}, 0};
+  Place here = placeAt(t, start);
+  constexpr int kFirstSteps = 256, kHalvings = 60;
+  std::optional<Place> across;
+  Place before = here, after = here;
+  for (double step = (high - low) / kFirstSteps; here.side != 0 && !across; step *= 2) {
+    if (before.t == low && after.t == high) return t;
+    for (Place* far : {&before, &after}) {
+      const double at = far == &before ? std::max(low, t - step) : std::min(high, t + step);
+      const Place next = placeAt(at, *far);
+      if (!across && next.side * here.side <= 0) {
+        across = next;
+        here = *far;
+      }
+      *far = next;
+    }
+  }
+  for (int k = 0; across && across->side != 0 && k < kHalvings; ++k) {
+    const Place middle = placeAt((here.t + across->t) / 2, here);
+    (middle.side * here.side > 0 ? here : *across) = middle;
+  }
+  return across ? across->t : here.t;
 }
 
 bool BorderLines::staysOnSurfaces(int border) const {

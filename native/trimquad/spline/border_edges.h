@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "trimquad/mesh/true_surface.h"
 #include "trimquad/spline/corner_point.h"
 #include "trimquad/spline/layout.h"
 #include "trimquad/spline/spline_model.h"
@@ -30,6 +31,10 @@ class BorderLines {
   void setEnd(const End& end, double s) {
     (end.atStart ? range_[end.border].low : range_[end.border].high) = s;
   }
+
+  /// Where a curve, from `low` to `high`, passes from one side of a border's end to the other, as its feet on
+  /// the sheets do, next to `t`; t where it does not.
+  double placeOnCurve(const End& end, const TrueCurve& curve, double t, double low, double high) const;
 
   /// The border's curve from end to end along increasing parameter of its first chart, and its lines in both
   /// charts with the same parameter.

@@ -205,6 +205,26 @@ std::vector<BoundaryRun> boundaryRuns(const Model& model, int regionIndex, const
   return runs;
 }
 
+void startAt(BoundaryRun& run, double t, const Eigen::Vector3d& point) {
+  std::size_t passed = 0;
+  while (passed + 2 < run.t.size() && run.t[passed + 1] <= t) ++passed;
+  run.t.erase(run.t.begin() + 1, run.t.begin() + 1 + long(passed));
+  run.points.erase(run.points.begin() + 1, run.points.begin() + 1 + long(passed));
+  run.uv.erase(run.uv.begin() + 1, run.uv.begin() + 1 + long(passed));
+  run.t.front() = t;
+  run.points.front() = point;
+}
+
+void endAt(BoundaryRun& run, double t, const Eigen::Vector3d& point) {
+  std::size_t passed = 0;
+  while (passed + 2 < run.t.size() && run.t.end()[-2 - long(passed)] >= t) ++passed;
+  run.t.erase(run.t.end() - 1 - long(passed), run.t.end() - 1);
+  run.points.erase(run.points.end() - 1 - long(passed), run.points.end() - 1);
+  run.uv.erase(run.uv.end() - 1 - long(passed), run.uv.end() - 1);
+  run.t.back() = t;
+  run.points.back() = point;
+}
+
 void cutAtSplits(const Model& model, const std::vector<CurveSplit>& splits, std::vector<BoundaryRun>& runs) {
   for (const auto& split : splits) {
     const std::size_t count = runs.size();

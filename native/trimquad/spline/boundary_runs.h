@@ -51,6 +51,10 @@ std::vector<BoundaryRun> boundaryRuns(const Model& model, int region, const Char
 std::vector<BoundaryRun> boundaryRuns(const Model& model, int region, const Layout& layout, int& corners,
                                       std::vector<CurveSplit>& splits);
 
+/// Moves an end of a run to another place of its curve; what lies beyond it is left out.
+void startAt(BoundaryRun& run, double t, const Eigen::Vector3d& point);
+void endAt(BoundaryRun& run, double t, const Eigen::Vector3d& point);
+
 /// Cuts the runs that pass over a split there.
 void cutAtSplits(const Model& model, const std::vector<CurveSplit>& splits, std::vector<BoundaryRun>& runs);
 

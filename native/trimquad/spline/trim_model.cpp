@@ -160,40 +160,18 @@ void ModelTrimmer::settleSplits(std::vector<CurveSplit>& splits) {
   for (auto& split : splits) {
     const auto& ends = borders_[split.region]->endsAt(split.point);
     if (ends.size() != 1) continue;
-    const SheetLine line = borders_[split.region]->line(ends[0].border, 0);
-    const double s = borders_[split.region]->endOf(ends[0]);
     const TrueCurve& curve = *model_.curves[split.curve.index].curve;
-    const Eigen::Vector2d beside(-line.along[1], line.along[0]);
-    Eigen::Vector2d guess = line.at(s);
-    const auto off = [&](double t) {
-      guess = line.sheet->footPoint(curve.point(t), guess);
-      return (guess - line.start).dot(beside);
-    };
-    // Between the neighbours on all runs that end here, to keep their order.
+    // At most half way to the other ends of all runs that end here, to keep their order.
     double low = curve.first(), high = curve.last();
     for (const auto& run : runs_) {
-      if (run.start.corner == split.corner) high = std::min(high, (run.t[0] + run.t[1]) / 2);
-      if (run.end.corner == split.corner) low = std::max(low, (run.t.end()[-1] + run.t.end()[-2]) / 2);
+      const double middle = (run.t.front() + run.t.back()) / 2;
+      if (run.start.corner == split.corner) high = std::min(high, middle);
+      if (run.end.corner == split.corner) low = std::max(low, middle);
     }
-    double t0 = split.t, t1 = split.t + 1e-3 * (high - split.t), f0 = off(t0), f1 = off(t1);
-    for (int step = 0; step < 20 && f1 != f0; ++step) {
-      const double t2 = std::clamp(t1 - f1 * (t1 - t0) / (f1 - f0), low, high);
-      if (std::abs(t2 - t1) < 1e-14 * (curve.last() - curve.first())) break;
-      t0 = t1;
-      f0 = f1;
-      t1 = t2;
-      f1 = off(t2);
-    }
-    if (std::abs(f1) < 1e-9) split.t = t1;
+    split.t = borders_[split.region]->placeOnCurve(ends[0], curve, split.t, low, high);
     for (auto& run : runs_) {
-      if (run.start.corner == split.corner) {
-        run.t.front() = split.t;
-        run.points.front() = curve.point(split.t);
-      }
-      if (run.end.corner == split.corner) {
-        run.t.back() = split.t;
-        run.points.back() = curve.point(split.t);
-      }
+      if (run.start.corner == split.corner) startAt(run, split.t, curve.point(split.t));
+      if (run.end.corner == split.corner) endAt(run, split.t, curve.point(split.t));
     }
   }
 }
