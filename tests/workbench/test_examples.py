@@ -150,14 +150,14 @@ def test_a_result_gives_its_field_and_its_map(converted, name):
         assert sum(s.index for s in item.singularities) == sum(k * n for k, n in item.field.singularities.items())
 
 
-REGION_KEYS = {"name", "status", "error", "mesh", "features", "holes", "singularities", "seamless", "tmesh", "quantization", "embedding",
-               "gridmap", "quads", "histograms", "nurbs", "seconds"}
+REGION_KEYS = {"name", "status", "error", "cut_from", "mesh", "features", "holes", "singularities", "seamless", "tmesh", "quantization",
+               "embedding", "gridmap", "quads", "histograms", "nurbs", "seconds"}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_report_has_its_keys(converted, name):
     report = json.loads((converted(name)[1] / "report.json").read_text())
-    assert {"input", "options", "regions", "seconds_total", "peak_memory_mb", "version"} <= set(report)
+    assert {"input", "options", "regions", "cuts", "seconds_total", "peak_memory_mb", "version"} <= set(report)
     assert {"path", "kind", "faces", "edges"} <= set(report["input"])
     assert report["options"]["quads"] == 400 and report["options"]["edge_length"] > 0
     for region in report["regions"]:
