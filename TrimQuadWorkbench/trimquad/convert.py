@@ -36,6 +36,8 @@ REFITS = (
 CLOSER = 0.1
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
+# Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
+SMALL_HOLE = 8
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 
@@ -57,13 +59,25 @@ class RegionResult:
         self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
+        self.fill_holes = 0.0  # holes shorter than this are bridged
         self.refits = self.field_edits = 0
-        self.fitted_from = self  # whose map the B-spline surfaces are of: another one where creases were given up
+        self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.seconds = {}
         self.cut_from = None
         self.fitted_closer = False
         self.cuts_left = MOST_CUTS
+
+    @property
+    def has_creases(self):
+        """Whether the B-spline surfaces follow the sharp edges inside the region that its quads follow."""
+        aligned = (r.region.features["aligned_edges"] for r in (self.fitted_from, self))
+        return next(aligned) == next(aligned)
+
+    @property
+    def holes_bridged_to_fit(self):
+        """How many holes the map of the B-spline surfaces goes on behind, though that of the quads does not."""
+        return 0 if self.fitted_from is self or not self.fitted_from.holes else self.fitted_from.holes["bridged"]
 
     @property
     def polygons(self):
@@ -323,10 +337,22 @@ def _warn_of_regions(result):
             result.warnings.append(
                 f"region '{item.name}' is too narrow for the quads; its edge length is {item.edge_length:.6g}"
             )
-        if item.fitted_from is not item:
+        if not item.has_creases:
             result.warnings.append(
                 f"region '{item.name}': the B-spline surfaces cannot follow its sharp edges as creases and round them within "
                 "the tolerance"
+            )
+        if item.holes_bridged_to_fit:
+            result.warnings.append(
+                f"region '{item.name}': the B-spline surfaces go on behind {item.holes_bridged_to_fit} small holes, which the "
+                "quads do not"
+            )
+        if item.fitted is not None and item.fitted.folded:
+            place = ", ".join(f"{x:.6g}" for x in item.fitted.folded[0])
+            result.warnings.append(
+                f"region '{item.name}': the B-spline surfaces have small folds within the tolerance, at "
+                f"{len(item.fitted.folded)} of {item.fitted.samples} places that were looked at (the first at {place}); use a "
+                "smaller edge length"
             )
         given_up = item.field and item.region.features["aligned_edges"] - item.field.aligned_edges
         if given_up:
@@ -407,7 +433,7 @@ def _fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
 def _map_region(item, index, result, progress):
     """The stages of one region, with shorter edges where it is too narrow for quads as large as they are wanted. The
     first Error that these do not cure ends it and is kept in the region."""
-    item.edge_length = result.options.edge_length
+    item.edge_length, item.fill_holes = result.options.edge_length, result.options.fill_holes
     for halving in range(HALVINGS + 1):
         try:
             return _try_region(item, index, result, progress)
@@ -420,40 +446,53 @@ def _map_region(item, index, result, progress):
                 item.region = item.mapped_region
                 item.grid = item.quads = item.fitted = None
                 continue
-            if not (error.stage == "fit" and _fit_without_creases(item, index, result, progress)):
+            if not (error.stage == "fit" and _fit_another_way(item, index, result, progress)):
                 item.error = error
         except MemoryError as error:
             item.error = system_error("memory", error)
         return
 
 
-def _fit_without_creases(item, index, result, progress):
-    """Where surfaces cannot follow a mesh's sharp edges as creases: surfaces over a map that ignores these. Whether they
-    could be fitted. The region's quads stay as they are."""
-    creases = item.region.features["aligned_edges"]
-    if result.source.kind != "mesh" or result.options.align or not creases or item.quads is None:
+def _fit_another_way(item, index, result, progress):
+    """Surfaces over another map of the region, where none fits over its own: one that goes on behind small holes, and of a
+    mesh one that does not follow its sharp edges. The region's quads stay as they are. Whether they could be fitted."""
+    if item.quads is None:
         return False
     native = load()
     if item.mapped_region is item.region:
         item.region = item.mapped_region = native.copy_region(item.region)
     else:
         item.mapped_region = native.copy_region(item.mapped_region)
-    native.place_without_creases(result.model, index, item.region)
-    smooth = RegionResult(result.model.regions[index])
-    smooth.edge_length, smooth.guidance = item.edge_length, item.guidance
-    if smooth.region.features["aligned_edges"] == creases:
-        return False
-    try:
-        _try_region(smooth, index, result, progress)
-    except Error as error:
-        if error.kind == "cancelled":
-            raise
-        return False
-    finally:
-        for stage, seconds in smooth.seconds.items():
-            item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
-    item.fitted, item.fitted_from = smooth.fitted, smooth
-    return True
+    small = SMALL_HOLE * item.edge_length
+    regions = [(item.region, small)]
+    if result.source.kind == "mesh" and not result.options.align and item.region.features["aligned_edges"]:
+        smooth = native.without_creases(item.region)
+        if smooth.features["aligned_edges"] < item.region.features["aligned_edges"]:
+            regions += [(smooth, item.fill_holes), (smooth, small)]
+    for region, fill_holes in regions:
+        native.place_region(result.model, index, region)
+        other = RegionResult(result.model.regions[index])
+        other.edge_length, other.guidance, other.fill_holes = item.edge_length, item.guidance, fill_holes
+        if fill_holes > item.fill_holes and not _has_holes(other, index, result, progress):
+            continue
+        try:
+            _try_region(other, index, result, progress)
+            item.fitted, item.fitted_from = other.fitted, other
+            return True
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+        finally:
+            for stage, seconds in other.seconds.items():
+                item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
+    native.place_region(result.model, index, item.mapped_region)
+    return False
+
+
+def _has_holes(item, index, result, progress):
+    """Whether bridging would close a hole of a region."""
+    with progress.stage("bridge", item.name) as native_progress:
+        return load().bridge_holes(result.model, index, item.fill_holes, native_progress)[1]["bridged"] > 0
 
 
 def _try_region(item, index, result, progress):
@@ -470,8 +509,8 @@ def _try_region(item, index, result, progress):
                 item.seconds[stage] = time.monotonic() - started
 
     item.bridged = item.region
-    if options.fill_holes > 0:
-        item.bridged, item.holes = run("bridge", native.bridge_holes, result.model, index, options.fill_holes)
+    if item.fill_holes > 0:
+        item.bridged, item.holes = run("bridge", native.bridge_holes, result.model, index, item.fill_holes)
     seed = run("seamless", native.seed, item.bridged, str(options.field), item.guidance, options.field_weight,
                item.edge_length)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits

@@ -56,7 +56,7 @@ def _region_report(result, index, item, deviations, seconds):
             "euler": item.region.euler,
         },
         "features": {**item.region.features, "followed_edges": item.field and item.field.aligned_edges,
-                     "creases": item.fitted_from is item},
+                     "creases": item.has_creases},
         "holes": item.holes and {**item.holes, "singularities": item.bridged_singularities},
         "singularities": item.field and _singularities(item),
         "seamless": item.seamless and {"flipped": 0, "field_edits": item.field_edits, **item.seamless.counters},
@@ -111,6 +111,8 @@ def _nurbs_report(result, index, item, deviations):
         "degree": result.options.degree,
         "max_deviation": item.fitted.max_deviation,
         "rms_deviation": item.fitted.rms_deviation,
+        "folds": len(item.fitted.folded),
+        "bridged_holes": item.holes_bridged_to_fit,
         "max_deviation_at": worst_place(item),
         "face_deviations": [
             {"face": f"Face{d.face}", "max": d.max, "rms": d.rms, "at": d.where} for d in deviations

@@ -155,14 +155,17 @@ void bindRegion(py::module_& m) {
   m.def(
       "copy_region", [](const Region& region) { return region; }, py::arg("region"));
   m.def(
-      "place_without_creases",
-      [](Model& model, int index, const Region& region) {
+      "without_creases",
+      [](const Region& region) {
         Region smooth = region;
         std::erase_if(smooth.aligned, [&](EdgeHandle e) { return !smooth.mesh.is_boundary(e); });
-        model.regions.at(std::size_t(index)) = std::move(smooth);
+        return smooth;
       },
-      py::arg("model"), py::arg("index"), py::arg("region"),
-      "Puts a region into the model, without the aligned edges inside it.");
+      py::arg("region"), "A region without the aligned edges inside it.");
+  m.def(
+      "place_region",
+      [](Model& model, int index, const Region& region) { model.regions.at(std::size_t(index)) = region; },
+      py::arg("model"), py::arg("index"), py::arg("region"), "Puts a region into the model.");
   m.def(
       "bridge_holes",
       [](Model& model, int index, double length, const Progress& progress) {

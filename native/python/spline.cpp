@@ -19,6 +19,12 @@ double edgeTolerance(const SplineModel& model, const SplineFace& face) {
   return largest;
 }
 
+py::list foldedOf(const FittedSurface& fit) {
+  py::list places;
+  for (const auto& p : fit.folded) places.append(py::make_tuple(p[0], p[1], p[2]));
+  return places;
+}
+
 py::list deviationsOf(const FittedSurface& fit) {
   py::list charts;
   for (const ChartDeviation& d : fit.deviations)
@@ -33,6 +39,8 @@ void bindSpline(py::module_& m) {
       .def_readonly("max_deviation", &FittedSurface::maxDeviation)
       .def_readonly("rms_deviation", &FittedSurface::rmsDeviation)
       .def_property_readonly("deviations", &deviationsOf, "by chart: largest, rms, place of the largest")
+      .def_property_readonly("folded", &foldedOf)
+      .def_readonly("samples", &FittedSurface::samples)
       .def_readonly("rounds", &FittedSurface::rounds)
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")

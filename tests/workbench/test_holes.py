@@ -1,6 +1,7 @@
 """Holes bridged for the map and cut out again, and slivers merged: from the options to the files."""
 import json
 import math
+import sys
 
 import numpy
 import pytest
@@ -269,3 +270,53 @@ def test_a_document_object_takes_both_options(document):
     shell.MergeSlivers = 0.0
     document.recompute()
     assert document.QuadMesh.TrimmedCells > trimmed
+
+
+class _FitsNoHoles:
+    """The compiled module, but where only a region with fewer boundary loops than `loops` can be fitted."""
+
+    def __init__(self, native, loops):
+        self._native, self._loops = native, loops
+        self.bridged = 0
+
+    def __getattr__(self, name):
+        return getattr(self._native, name)
+
+    def bridge_holes(self, *arguments):
+        bridged, counts = self._native.bridge_holes(*arguments)
+        self.bridged = max(self.bridged, counts["bridged"])
+        return bridged, counts
+
+    def fit_surface(self, region, *rest):
+        if region.boundary_loops - self.bridged >= self._loops:
+            raise trimquad.Error("stage", "fit", "the tolerance cannot be met", region.name)
+        return self._native.fit_surface(region, *rest)
+
+
+def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay(monkeypatch):
+    module = sys.modules["trimquad.convert"]
+    native = _FitsNoHoles(module.load(), 3)
+    monkeypatch.setattr(module, "load", lambda: native)
+    # Round holes of 23 and of 49 around, the second wider than is bridged.
+    result = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+    (region,) = result.regions
+    assert region.error is None and region.fitted_from is not region
+    assert region.holes is None and region.fitted_from.holes["bridged"] == 1
+    assert any("go on behind 1 small holes" in line for line in result.warnings)
+    assert result.report["regions"][0]["nurbs"]["bridged_holes"] == 1
+    assert result.report["regions"][0]["features"]["creases"] is True
+    assert len(result.shape.Faces) == 1 and len(result.shape.Faces[0].Wires) == 3
+    result.shape.check(True)
+    points, _, _ = region.map
+    assert len(points) == region.region.vertices, "the map of the quads is that of the region itself"
+
+
+def test_where_nothing_fits_at_all_the_region_is_left_as_it_was(monkeypatch):
+    module = sys.modules["trimquad.convert"]
+    native = _FitsNoHoles(module.load(), 0)
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+    (region,) = result.regions
+    assert region.error.stage == "fit" and region.fitted is None and region.fitted_from is region
+    assert result.shape is None and region.polygons is not None
+    assert result.model.regions[0].boundary_loops == 3

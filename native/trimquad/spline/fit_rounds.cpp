@@ -25,10 +25,17 @@ constexpr double kCorrectionPaysClose = 0.96;
 /// surface that is still far from the region would bring its waves into the parameters.
 constexpr double kCorrectionStarts = 20;
 /// Part of the deviation with the chart's parameters that the one with corrected parameters must stay under
-/// to be kept.
+/// to be kept; where the tolerance is close, and starting again from the chart's would only lose what was
+/// won.
 constexpr double kCorrectedWins = 0.7;
+constexpr double kCorrectedWinsClose = 0.95;
 /// How much more the samples that deviate most weigh in the next round, to even out the largest deviations.
 constexpr double kEmphasis = 10;
+/// The same of samples next to where the surface is turned over, which keep the map's parameters: these fold
+/// nowhere.
+constexpr double kFoldEmphasis = 20;
+/// Factor of the fairness around places that stay turned over, each round, and the largest.
+constexpr double kFoldStiffens = 4, kStiffestFold = 1e6;
 /// Only where the deviation is above this part of the largest one are knots inserted: it reaches a few spans
 /// beyond its cause, where it goes away by itself. Along a crease it does not, and all that fail are refined.
 constexpr double kWorstPart = 0.3;
@@ -36,6 +43,10 @@ constexpr double kWorstPart = 0.3;
 constexpr int kPatience = 4;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
+/// Part of the samples at which the surface may be turned over in folds within what is enough, where no
+/// surface without them is found; and rounds that are spent on getting rid of them.
+constexpr double kSmallFolds = 3e-3;
+constexpr int kFoldPatience = 8;
 /// Part of the control samples at most that may have started from bad parameters.
 constexpr double kFewLost = 0.01;
 
@@ -80,9 +91,11 @@ FittedSurface FitRounds::rounds() {
     if (rounds_ == 1) start_ = best_ = deviation_.max;
     best_ = std::min(best_, deviation_.max);
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
-    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_))
+    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0))
       return std::move(result_);
     keepIfEnough();
+    if (kept_ && !kept_->folded.empty() && ++foldRounds_ > kFoldPatience) throw unreachable();
+    stiffenFolds();
     if (correctionPays()) {
       correct();
     } else {
@@ -97,6 +110,8 @@ FittedSurface FitRounds::rounds() {
 
 void FitRounds::takeSamples() {
   samples_ = makeSamples(false);
+  ofMap_.clear();
+  for (const auto& s : samples_) ofMap_.push_back({s.chart, s.parameter});
   cells_ = cells();
   emphasis_.assign(samples_.size(), 1);
 }
@@ -200,6 +215,20 @@ void FitRounds::correct() {
     const double part = samples_[i].distance / deviation_.max;
     emphasis_[i] = 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
   }
+  unfold(deviation_.turnedOver);
+}
+
+/// Around samples where the surface is turned over: back to the map's parameters.
+void FitRounds::unfold(const std::vector<int>& turnedOver) {
+  std::vector<char> turned(samples_.size(), 0);
+  for (const int i : turnedOver) turned[i] = 1;
+  for (const auto& cell : cells_)
+    if (turned[cell[0]] || turned[cell[1]] || turned[cell[2]])
+      for (const int i : cell) {
+        samples_[i].chart = ofMap_[i].chart;
+        samples_[i].parameter = ofMap_[i].parameter;
+        emphasis_[i] = kFoldEmphasis;
+      }
 }
 
 /// On new knots: the map's parameters, which are smooth where the map is, or those corrected on the coarser
@@ -210,27 +239,61 @@ void FitRounds::chooseParameters() {
   corrections_ = 0;
   takeSamples();
   if (!corrected) return;
-  std::vector<FitPlace> ofMap;
-  for (const auto& s : samples_) ofMap.push_back({s.chart, s.parameter});
-  measure(samples_, feet_);
+  const Deviation found = measure(samples_, feet_);
   moveTo(feet_, samples_);
+  const auto emphasis = emphasis_;
+  unfold(found.turnedOver);
   solve();
   State withFeet = state();
-  moveTo(ofMap, samples_);
+  emphasis_ = emphasis;
+  moveTo(ofMap_, samples_);
   solve();
   const Deviation& corrections = withFeet.deviation;
-  if (corrections.turnedOver.empty() && corrections.max < kCorrectedWins * deviation_.max)
-    restore(std::move(withFeet));
+  const double folds = double(std::max(corrections.turnedOver.size(), deviation_.turnedOver.size()));
+  const bool foldsLess = corrections.turnedOver.size() <= deviation_.turnedOver.size() ||
+                         (!deviation_.turnedOver.empty() && folds <= kSmallFolds * double(samples_.size()));
+  const double wins = corrections.max <= kClose * tolerance_ ? kCorrectedWinsClose : kCorrectedWins;
+  if (foldsLess && corrections.max < wins * deviation_.max) restore(std::move(withFeet));
   solved_ = true;
 }
 
-/// Keeps the surfaces for the case that none come closer.
+/// Keeps the surfaces for the case that none come closer, or none without folds.
 void FitRounds::keepIfEnough() {
-  if (deviation_.max > enough_ || !deviation_.turnedOver.empty()) return;
-  if (kept_ && deviation_.max > 0.95 * kept_->maxDeviation) return;
+  const std::size_t folds = deviation_.turnedOver.size();
+  if (deviation_.max > enough_ || double(folds) > kSmallFolds * double(samples_.size())) return;
+  if (kept_ && (folds > 0 ? folds >= kept_->folded.size()
+                          : kept_->folded.empty() && deviation_.max > 0.95 * kept_->maxDeviation))
+    return;
+  if (folds > 0 && !foldsStayNear()) return;
   const auto failing = failing_;
-  if (verified(enough_)) kept_ = result_;
+  const auto turned = turned_;
+  if (verified(enough_, kSmallFolds) &&
+      (!kept_ || result_.folded.empty() || result_.folded.size() < kept_->folded.size()))
+    kept_ = result_;
   failing_ = failing;
+  turned_ = turned;
+}
+
+/// Whether the surfaces stay within what is enough of the region between the samples where they are turned
+/// over and the next ones: samples see the surfaces only where the region is.
+bool FitRounds::foldsStayNear() const {
+  constexpr int kSteps = 4;
+  std::vector<char> turned(samples_.size(), 0);
+  for (const int i : deviation_.turnedOver) turned[i] = 1;
+  for (const auto& cell : cells_) {
+    const SurfaceSample &a = samples_[cell[0]], &b = samples_[cell[1]], &c = samples_[cell[2]];
+    if (!turned[cell[0]] && !turned[cell[1]] && !turned[cell[2]]) continue;
+    if (a.chart != b.chart || a.chart != c.chart) continue;
+    const auto& surface = result_.surfaces[a.chart];
+    if (surface.closedU) continue;
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; i + j <= kSteps; ++j) {
+        const Eigen::Vector2d x =
+            a.parameter + (i * (b.parameter - a.parameter) + j * (c.parameter - a.parameter)) / kSteps;
+        if (triangles_.closest(surface.point(x[0], x[1])).squaredDistance > enough_ * enough_) return false;
+      }
+  }
+  return true;
 }
 
 /// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
@@ -284,8 +347,8 @@ std::vector<ChartDeviation> FitRounds::deviationsByChart(const std::vector<Surfa
   return result;
 }
 
-/// Whether other samples keep the tolerance as well.
-bool FitRounds::verified(double tolerance) {
+/// Whether other samples keep the tolerance as well. \param folds part of them that may be turned over
+bool FitRounds::verified(double tolerance, double folds) {
   auto control = makeSamples(true);
   std::vector<FitPlace> feet;
   Deviation found = measure(control, feet);
@@ -295,7 +358,15 @@ bool FitRounds::verified(double tolerance) {
   result_.maxDeviation = std::max(found.max, deviation_.max);
   result_.rmsDeviation = found.rms;
   result_.rounds = rounds_;
-  if (found.max <= tolerance && found.turnedOver.empty()) return true;
+  result_.folded.clear();
+  folds_.clear();
+  for (const int i : found.turnedOver) {
+    result_.folded.push_back(control[i].point);
+    folds_.push_back(feet[i]);
+  }
+  result_.samples = int(control.size());
+  if (found.max <= tolerance && double(found.turnedOver.size()) <= folds * double(control.size()))
+    return true;
   failing_ = places(control, threshold(found.max));
   noteTurned(control, found);
   return false;
@@ -333,6 +404,40 @@ void FitRounds::refine() {
   atRefinement_ = best_;
   if (idle_ > 0) giveWay();
   if (idle_ > kPatience || !insertKnots() || poles() > policy_.maxPoles) throw unreachable();
+}
+
+/// More fairness where the surface is turned over in few places, the more the longer it stays so; and less
+/// again where that keeps it from the tolerance.
+void FitRounds::stiffenFolds() {
+  if (deviation_.max > kClose * tolerance_ ||
+      double(deviation_.turnedOver.size()) > kSmallFolds * double(samples_.size()))
+    return;
+  std::vector<char> folds(fairness_.spots.size(), 0);
+  const auto holds = [](const Fairness::Spot& spot, const FitPlace& x) {
+    return spot.chart == x.chart && (spot.at - x.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
+  };
+  for (const int i : deviation_.turnedOver) folds_.push_back(feet_[i]);
+  for (const auto& x : folds_) {
+    bool isNew = true;
+    for (std::size_t k = 0; k < fairness_.spots.size(); ++k) {
+      if (!holds(fairness_.spots[k], x)) continue;
+      isNew = false;
+      if (k < folds.size()) folds[k] = 1;
+    }
+    if (!isNew) continue;
+    const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
+    fairness_.spots.push_back({x.chart, x.parameter,
+                               std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1]))),
+                               1});
+  }
+  for (std::size_t k = 0; k < folds.size(); ++k) {
+    auto& spot = fairness_.spots[k];
+    if (folds[k])
+      spot.factor = std::min(kFoldStiffens * spot.factor, kStiffestFold);
+    else if (std::any_of(failing_.begin(), failing_.end(), [&](const FitPlace& x) { return holds(spot, x); }))
+      spot.factor /= kFoldStiffens;
+  }
+  folds_.clear();
 }
 
 void FitRounds::stiffen(double factor) {

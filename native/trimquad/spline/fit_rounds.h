@@ -74,6 +74,7 @@ class FitRounds {
   std::vector<SurfaceSample> samples_;
   std::vector<std::array<int, 3>> cells_;
   std::vector<FitPlace> failing_, turned_;
+  std::vector<FitPlace> folds_;  ///< feet of control samples where the surface is turned over
   Fairness fairness_;
   double narrowest_ = 0;  ///< knot interval, quads
   double toleranceInQuads_ = 0;
@@ -97,10 +98,12 @@ class FitRounds {
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
   static void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples);
   void correct();
+  void unfold(const std::vector<int>& turnedOver);
   void chooseParameters();
   void keepIfEnough();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
-  bool verified(double tolerance);
+  bool foldsStayNear() const;
+  bool verified(double tolerance, double folds);
   std::vector<ChartDeviation> deviationsByChart(const std::vector<SurfaceSample>& control,
                                                 const std::vector<FitPlace>& feet) const;
   double threshold(double largest) const;
@@ -108,6 +111,7 @@ class FitRounds {
   bool correctionPays() const;
   void refine();
   void stiffen(double factor);
+  void stiffenFolds();
   State state() const;
   void restore(State state);
   int poles() const;
@@ -118,13 +122,13 @@ class FitRounds {
   std::optional<FittedSurface> kept_;  ///< within what is enough
   Deviation deviation_, previous_;
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over
-  std::vector<FitPlace> feet_;
-  std::vector<double> emphasis_;  ///< by sample: factor of its weight
+  std::vector<FitPlace> feet_, ofMap_;  ///< by sample: where its foot lies; where the map has it
+  std::vector<double> emphasis_;        ///< by sample: factor of its weight
   State beforeCorrection_;
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
-  int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0;
+  int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0;
 };
 
 }  // namespace trimquad

@@ -36,13 +36,17 @@ struct FittedSurface {
   std::vector<SplineSurface> surfaces;        ///< by chart of the layout
   double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
   std::vector<ChartDeviation> deviations;     ///< by chart, one where there is a single surface
+  /// Independent samples where a surface is turned over in a small fold, though it lies within the tolerance
+  /// there; and how many samples there are.
+  std::vector<Eigen::Vector3d> folded;
+  int samples = 0;
   int rounds = 0;
 };
 
 /// Least-squares fit with parameter correction, knots refined only where the deviation exceeds the tolerance.
 /// The domain is a rectangle of whole quads that holds the region's image with room on every side (except
-/// around a closed direction). Throws Error(Stage, "fit") where the tolerance cannot be met, with the
-/// deviation reached.
+/// around a closed direction). Small folds stay only where no surface within the tolerance is found without
+/// them. Throws Error(Stage, "fit") where the tolerance cannot be met, with the deviation reached.
 FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOptions& options,
                          const Progress& progress);
 

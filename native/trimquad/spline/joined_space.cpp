@@ -450,6 +450,7 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
     Fairness here = fairness;
     here.stiffAt = corners[c];
     here.stiffReach = stiffReach;
+    std::erase_if(here.spots, [&](const Fairness::Spot& spot) { return spot.chart != int(c); });
     charts[c].addNormalEquations(data[c], here, middle, offset[c], entries, rhs);
   }
   const auto rows = conditions();

@@ -162,6 +162,17 @@ bool Fairness::isStiff(const SplineLine& u, int i, const SplineLine& v, int j) c
   });
 }
 
+double Fairness::weight(const SplineLine& u, int i, const SplineLine& v, int j, bool hasData) const {
+  // Below one quad the energy counts by the knot rectangle: it must not hold back knots that follow a crease.
+  const double size = isStiff(u, i, v, j) ? 1 : std::clamp(u.width(i) * v.width(j), 1e-3, 1.0);
+  double factor = size * size;
+  const Eigen::Vector2d low(u.breaks[i], v.breaks[j]), high(u.breaks[i + 1], v.breaks[j + 1]);
+  for (const auto& spot : spots)
+    if ((spot.at - spot.at.cwiseMax(low).cwiseMin(high)).lpNorm<Eigen::Infinity>() < spot.reach)
+      factor = std::max(factor, spot.factor);
+  return factor * (hasData ? withData : withoutData);
+}
+
 /// Calls emit(span in u, span in v, normal matrix, right-hand side) for every knot rectangle; local unknown
 /// (a, b) has the number a + (degreeU + 1) * b.
 template <class Emit>
@@ -188,10 +199,7 @@ void SplineSpace::forEachRectangle(const std::vector<Datum>& data, const Fairnes
     if (progress) progress->check();
     for (int i = 0; i < u.spans(); ++i) {
       const bool hasData = next != order.end() && next->first == i + u.spans() * j;
-      // Below one quad the energy counts by the knot rectangle: it must not hold back knots that follow a
-      // crease.
-      const double size = fairness.isStiff(u, i, v, j) ? 1 : std::clamp(u.width(i) * v.width(j), 1e-3, 1.0);
-      const double lambda = size * size * (hasData ? fairness.withData : fairness.withoutData);
+      const double lambda = fairness.weight(u, i, v, j, hasData);
       for (int b = 0; b < nv; ++b)
         for (int d = 0; d < nv; ++d)
           local.block(b * nu, d * nu, nu, nu) = lambda * (productsV[j][0](b, d) * productsU[i][2] +

@@ -45,7 +45,18 @@ struct Fairness {
   /// Knot rectangles within `stiffReach` of these count as larger ones do.
   std::vector<Eigen::Vector2d> stiffAt = {};
   double stiffReach = 0;  ///< quads
+  /// A knot rectangle that such a square touches counts as one of 1 quad^2 does, times its factor, the
+  /// largest of several.
+  struct Spot {
+    int chart;
+    Eigen::Vector2d at;
+    double reach;  ///< quads, in both directions
+    double factor;
+  };
+  std::vector<Spot> spots = {};
 
+  /// Weight of the energy on a knot rectangle.
+  double weight(const SplineLine& u, int i, const SplineLine& v, int j, bool hasData) const;
   bool isStiff(const SplineLine& u, int i, const SplineLine& v, int j) const;
 };
 
