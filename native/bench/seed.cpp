@@ -7,6 +7,7 @@
 #include "trimquad/field/curvature_guidance.h"
 #include "trimquad/seamless/seamless_map.h"
 #include "trimquad/seamless/solve_map.h"
+#include "trimquad/seamless/untangle.h"
 
 using namespace trimquad;
 
@@ -123,20 +124,24 @@ void untangling(benchmark::State& state) {
   Eigen::VectorXd start = poissonMap(p.region.mesh, p.map.target, *p.basis);
   for (double& x : start) x += noise(random);
   const int flipped = p.energy->flipped(p.energy->coordinates(start));
-  int steps = 0;
+  const auto turnedOver = [&](const Eigen::VectorXd& z) {
+    return p.energy->turnedOver(p.energy->coordinates(z));
+  };
+  MapCounters counters;
   for (auto _ : state) {
     Eigen::VectorXd z = start;
-    steps = 0;
+    counters = {};
     StepBudget budget;
     SparseSolver solver("untangle");
-    untangle(*p.energy, *p.basis, z, steps, solver, budget, Progress());
+    untangle(*p.energy, turnedOver, z, counters, solver, budget, Progress());
     if (p.energy->flipped(p.energy->coordinates(z)) > 0) {
       state.SkipWithError("triangles stay turned over");
       break;
     }
   }
   state.counters["flipped"] = flipped;
-  state.counters["steps"] = steps;
+  state.counters["neighbourhoods"] = counters.neighbourhoods;
+  state.counters["steps"] = counters.untangleIterations;
   count(state, p.region);
 }
 

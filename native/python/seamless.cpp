@@ -16,6 +16,7 @@ py::dict countersOf(const MapCounters& counters) {
   py::dict all;
   all["flipped_before"] = counters.flippedBefore;
   all["path_steps"] = counters.pathSteps;
+  all["neighbourhoods"] = counters.neighbourhoods;
   all["untangle_iterations"] = counters.untangleIterations;
   all["refinements"] = counters.refinements;
   all["halved_edges"] = counters.halvedEdges;

@@ -4,6 +4,7 @@
 #include "trimquad/gridmap/integer_charts.h"
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
+#include "trimquad/seamless/untangle.h"
 #include "trimquad/seamless/winding.h"
 
 namespace trimquad {
@@ -37,11 +38,14 @@ bool startsInjective(const IntegerCharts& charts, const SeamBasis& basis, const 
                      const Progress& progress) {
   counters.flippedBefore = energy.flipped(energy.coordinates(z));
   if (counters.flippedBefore == 0) return true;
-  StepBudget budget(kRepair);
-  untangle(energy, basis, z, counters.untangleIterations, solver, budget, progress);
-  const Eigen::VectorXd x = energy.coordinates(z);
   std::vector<int> index = coneQuarters(charts.map);
   for (int& i : index) i = 4 - i;
+  const auto wrong = [&](const Eigen::VectorXd& map) {
+    return wrongTriangles(charts.map.mesh, index, basis, energy, energy.coordinates(map));
+  };
+  StepBudget budget(kRepair);
+  untangle(energy, wrong, z, counters, solver, budget, progress);
+  const Eigen::VectorXd x = energy.coordinates(z);
   return energy.flipped(x) == 0 && wrongCones(charts.map.mesh, index, basis, x).empty();
 }
 
@@ -62,7 +66,7 @@ GridMap optimizedPatchMap(const SeamlessMap& seamless, const PatchMap& patches, 
   }
   result.counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
   for (int i = 0; i < kMostSteps; ++i) {
-    const double decrease = newtonStep(energy, basis, symmetricDirichlet, seamless.follow, true, solver, z);
+    const double decrease = newtonStep(energy, symmetricDirichlet, seamless.follow, true, solver, z);
     ++result.counters.iterations;
     progress.report(double(i) / kMostSteps);
     if (decrease < kConverged) break;

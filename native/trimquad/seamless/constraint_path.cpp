@@ -2,6 +2,7 @@
 
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
+#include "trimquad/seamless/untangle.h"
 #include "trimquad/seamless/winding.h"
 
 namespace trimquad {
@@ -22,9 +23,9 @@ MapTarget imageOf(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen::
 
 std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEnergy energy,
                                                  const std::vector<int>& index, const SeamBasis& basis,
-                                                 double follow, const Eigen::VectorXd& x, int& iterations,
-                                                 SparseSolver& solver, StepBudget& budget,
-                                                 const Progress& progress) {
+                                                 double follow, const Eigen::VectorXd& x,
+                                                 MapCounters& counters, SparseSolver& solver,
+                                                 StepBudget& budget, const Progress& progress) {
   MapEnergy ahead = energy;
   Eigen::VectorXd z = basis.basis().restrict(x);
   // What the constants of x are beyond those of the basis; goes to 0.
@@ -37,14 +38,13 @@ std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEne
     const double length = std::min(step, left);
     const Eigen::VectorXd shift = (left - length) * rest;
     ahead.shift(shift);
-    Eigen::VectorXd next = leastSquares(ahead, basis, solver);
-    const auto injective = [&] {
-      const Eigen::VectorXd y = ahead.coordinates(next);
-      return ahead.flipped(y) == 0 && wrongCones(mesh, index, basis, y).empty();
+    Eigen::VectorXd next = leastSquares(ahead, solver);
+    const auto wrong = [&](const Eigen::VectorXd& map) {
+      return wrongTriangles(mesh, index, basis, ahead, ahead.coordinates(map));
     };
-    if (!injective()) untangle(ahead, basis, next, iterations, solver, budget, progress);
-    ++iterations;
-    if (!injective()) {
+    untangle(ahead, wrong, next, counters, solver, budget, progress);
+    ++counters.pathSteps;
+    if (!wrong(next).empty()) {
       step = length / 2;
       continue;
     }
@@ -54,7 +54,7 @@ std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEne
     if (left == 0) return z;
     constexpr int kRelax = 3;
     for (int relax = 0; relax < kRelax; ++relax)
-      newtonStep(energy, basis, symmetricDirichlet, follow, true, solver, z);
+      newtonStep(energy, symmetricDirichlet, follow, true, solver, z);
     step = 2 * length;
   }
   return std::nullopt;

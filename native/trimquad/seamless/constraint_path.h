@@ -16,8 +16,8 @@ namespace trimquad {
 /// \param x  coordinates of the basis; all its equations hold but for constants
 std::optional<Eigen::VectorXd> followConstraints(const SurfaceMesh& mesh, MapEnergy energy,
                                                  const std::vector<int>& index, const SeamBasis& basis,
-                                                 double follow, const Eigen::VectorXd& x, int& iterations,
-                                                 SparseSolver& solver, StepBudget& budget,
-                                                 const Progress& progress);
+                                                 double follow, const Eigen::VectorXd& x,
+                                                 MapCounters& counters, SparseSolver& solver,
+                                                 StepBudget& budget, const Progress& progress);
 
 }  // namespace trimquad

@@ -7,19 +7,19 @@
 namespace trimquad {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-using Terms = Matrix::InnerIterator;
+using Basis = HessianPattern::Basis;
+using Terms = Basis::InnerIterator;
 
-int termCount(const Matrix& basis, int variable) {
+int termCount(const Basis& basis, int variable) {
   return basis.outerIndexPtr()[variable + 1] - basis.outerIndexPtr()[variable];
 }
 
-bool isUnknown(const Matrix& basis, int variable) {
+bool isUnknown(const Basis& basis, int variable) {
   return termCount(basis, variable) == 1 && Terms(basis, variable).value() == 1;
 }
 
 /// By variable: the first one that is the same sum.
-std::vector<int> representatives(const Matrix& basis) {
+std::vector<int> representatives(const Basis& basis) {
   const int* const outer = basis.outerIndexPtr();
   const auto compare = [&](int a, int b) {
     const int na = termCount(basis, a), nb = termCount(basis, b);
@@ -45,8 +45,7 @@ std::vector<int> representatives(const Matrix& basis) {
 
 }  // namespace
 
-HessianPattern::HessianPattern(const ConstraintBasis& basis, const std::vector<Corners>& triangles)
-    : basis_(basis.matrix()) {
+HessianPattern::HessianPattern(const Basis& basis, const std::vector<Corners>& triangles) : basis_(basis) {
   basis_.makeCompressed();
   findPairs(triangles);
   findPlaces(triangles);

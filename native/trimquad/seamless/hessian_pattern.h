@@ -4,8 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "trimquad/base/constraint_basis.h"
-
 namespace trimquad {
 
 /// Where the second derivatives of a sum over triangles go in the sparse Hessian by the free unknowns of a
@@ -16,8 +14,13 @@ class HessianPattern {
  public:
   using Corners = std::array<int, 6>;  ///< the variables of the basis that a triangle depends on
 
+  /// By variable: the sum of unknowns that it is.
+  using Basis = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
   HessianPattern() = default;  ///< of no triangles and no unknowns
-  HessianPattern(const ConstraintBasis& basis, const std::vector<Corners>& triangles);
+  HessianPattern(const Basis& basis, const std::vector<Corners>& triangles);
+
+  const Basis& basis() const { return basis_; }
 
   /// The Hessian of nothing: symmetric, with a stored zero wherever a triangle can put something.
   const Eigen::SparseMatrix<double>& zero() const { return zero_; }
@@ -39,7 +42,6 @@ class HessianPattern {
   Eigen::SparseMatrix<double> finish(Sum&& sum) const;
 
  private:
-  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   struct Pair {  // of variables
     int row, column;
     size_t firstPlace;  // of (unknown of row, unknown of column); columns one after another
@@ -52,7 +54,7 @@ class HessianPattern {
   void findPlaces(const std::vector<Corners>& triangles);
 
   Eigen::SparseMatrix<double> zero_;
-  Matrix basis_;  // by variable: its terms
+  Basis basis_;
   std::vector<Triangle> triangles_;
   std::vector<int> entry_;   // of triangles: places or pairs, columns one after another
   std::vector<Pair> pairs_;  // sorted

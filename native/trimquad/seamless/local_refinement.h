@@ -5,12 +5,6 @@
 
 namespace trimquad {
 
-/// The triangles that a map x turns over or collapses, and those around vertices that it winds around too
-/// often or too rarely. Ascending.
-std::vector<FaceHandle> wrongTriangles(const SurfaceMesh& mesh, const std::vector<int>& index,
-                                       const SeamBasis& basis, const MapEnergy& energy,
-                                       const Eigen::VectorXd& x);
-
 /// These triangles and the ones within so many rings around them. Ascending.
 std::vector<FaceHandle> within(const SurfaceMesh& mesh, const std::vector<FaceHandle>& triangles, int rings);
 

@@ -24,7 +24,7 @@ MapDensity foldoverFree(double I, double D, double epsilon) {
 }
 
 MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis)
-    : basis_(basis.basis()), local_(mesh.n_faces()) {
+    : local_(mesh.n_faces()), offset_(basis.basis().offset()) {
   std::vector<HessianPattern::Corners> corners;
   corners.reserve(local_.size());
   for (const auto f : mesh.faces()) {
@@ -35,7 +35,7 @@ MapEnergy::MapEnergy(const SurfaceMesh& mesh, const MapTarget& target, const Sea
         local.coordinate[2 * k + axis] = basis.coordinate(basis.wedge(h), axis);
     corners.push_back(local.coordinate);
   }
-  pattern_ = HessianPattern(basis_, corners);
+  pattern_ = HessianPattern(basis.basis().matrix(), corners);
   aim(target);
 }
 
@@ -88,9 +88,58 @@ MapEnergy::Jacobian MapEnergy::jacobian(int face, const Eigen::VectorXd& x) cons
 }
 
 Eigen::VectorXd MapEnergy::coordinates(const Eigen::VectorXd& z) const {
-  Eigen::VectorXd x = basis_.matrix() * z + basis_.offset();
+  Eigen::VectorXd x = pattern_.basis() * z + offset_;
   if (shift_.size() > 0) x += shift_;
   return x;
+}
+
+std::vector<int> MapEnergy::unknownsOf(int face) const {
+  std::vector<int> unknowns;
+  for (const int variable : local_[face].coordinate)
+    for (HessianPattern::Basis::InnerIterator term(pattern_.basis(), variable); term; ++term)
+      unknowns.push_back(int(term.col()));
+  std::sort(unknowns.begin(), unknowns.end());
+  unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
+  return unknowns;
+}
+
+MapEnergy MapEnergy::restricted(const std::vector<int>& faces, const std::vector<int>& unknowns,
+                                const Eigen::VectorXd& z) const {
+  const auto place = [](const std::vector<int>& ascending, int element) {
+    return int(std::lower_bound(ascending.begin(), ascending.end(), element) - ascending.begin());
+  };
+  std::vector<int> variables;
+  for (const int f : faces)
+    variables.insert(variables.end(), local_[f].coordinate.begin(), local_[f].coordinate.end());
+  std::sort(variables.begin(), variables.end());
+  variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
+
+  MapEnergy part;
+  part.offset_.resize(Eigen::Index(variables.size()));
+  std::vector<Eigen::Triplet<double>> terms;
+  for (int i = 0; i < int(variables.size()); ++i) {
+    double held = offset_[variables[i]] + (shift_.size() > 0 ? shift_[variables[i]] : 0);
+    for (HessianPattern::Basis::InnerIterator term(pattern_.basis(), variables[i]); term; ++term) {
+      const int unknown = int(term.col()), column = place(unknowns, unknown);
+      if (column < int(unknowns.size()) && unknowns[column] == unknown)
+        terms.emplace_back(i, column, term.value());
+      else
+        held += term.value() * z[unknown];
+    }
+    part.offset_[i] = held;
+  }
+  HessianPattern::Basis basis(Eigen::Index(variables.size()), Eigen::Index(unknowns.size()));
+  basis.setFromTriplets(terms.begin(), terms.end());
+
+  std::vector<HessianPattern::Corners> corners;
+  for (const int f : faces) {
+    part.local_.push_back(local_[f]);
+    for (int& variable : part.local_.back().coordinate) variable = place(variables, variable);
+    corners.push_back(part.local_.back().coordinate);
+    part.totalArea_ += local_[f].area;
+  }
+  part.pattern_ = HessianPattern(basis, corners);
+  return part;
 }
 
 std::vector<int> MapEnergy::heldFlat() const {
@@ -101,8 +150,8 @@ std::vector<int> MapEnergy::heldFlat() const {
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<int> flat;
   for (int round = 0; round < 2; ++round) {
-    Eigen::VectorXd z(basis_.freeCount());
-    const double size = 1 + (basis_.offset().size() > 0 ? basis_.offset().cwiseAbs().maxCoeff() : 0);
+    Eigen::VectorXd z(unknownCount());
+    const double size = 1 + (offset_.size() > 0 ? offset_.cwiseAbs().maxCoeff() : 0);
     for (double& value : z) value = size * uniform(random);
     const Eigen::VectorXd x = coordinates(z);
     const auto vanishes = [&](int f) {
@@ -117,6 +166,13 @@ std::vector<int> MapEnergy::heldFlat() const {
     }
   }
   return flat;
+}
+
+std::vector<FaceHandle> MapEnergy::turnedOver(const Eigen::VectorXd& x) const {
+  std::vector<FaceHandle> faces;
+  for (int f = 0; f < int(local_.size()); ++f)
+    if (!(jacobian(f, x).det() > 0)) faces.emplace_back(f);
+  return faces;
 }
 
 int MapEnergy::flipped(const Eigen::VectorXd& x) const {

@@ -60,11 +60,21 @@ class MapEnergy {
   };
   Jacobian jacobian(int face, const Eigen::VectorXd& x) const;
 
+  int faceCount() const { return int(local_.size()); }
+  int unknownCount() const { return int(pattern_.basis().cols()); }
   Eigen::VectorXd coordinates(const Eigen::VectorXd& z) const;  ///< x = matrix z + offset + shift
+  /// How x moves where z moves like this.
+  Eigen::VectorXd movement(const Eigen::VectorXd& z) const { return pattern_.basis() * z; }
+  /// The unknowns that a triangle depends on, ascending.
+  std::vector<int> unknownsOf(int face) const;
+  /// The energy of these triangles alone as a function of these unknowns, where z holds the others.
+  MapEnergy restricted(const std::vector<int>& faces, const std::vector<int>& unknowns,
+                       const Eigen::VectorXd& z) const;
 
   /// Triangles that the constraints hold flat, whatever z is.
   std::vector<int> heldFlat() const;
-  int flipped(const Eigen::VectorXd& x) const;  ///< triangles with det <= 0
+  std::vector<FaceHandle> turnedOver(const Eigen::VectorXd& x) const;  ///< triangles with det <= 0, ascending
+  int flipped(const Eigen::VectorXd& x) const;                         ///< how many
   double smallestDeterminant(const Eigen::VectorXd& x) const;
   /// Largest step along `direction` before a triangle collapses; infinite where none does.
   double stepToCollapse(const Eigen::VectorXd& x, const Eigen::VectorXd& direction) const;
@@ -90,9 +100,11 @@ class MapEnergy {
                    double tangentQ, const Jacobian& j, double follow, Eigen::VectorXd& gradientX,
                    HessianPattern::Sum& hessian) const;
 
-  const ConstraintBasis& basis_;
+  MapEnergy() = default;
+
   std::vector<Local> local_;
   HessianPattern pattern_;
+  Eigen::VectorXd offset_;
   double totalArea_ = 0;
   Eigen::VectorXd shift_;  ///< empty for 0
 };

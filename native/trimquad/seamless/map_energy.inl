@@ -19,7 +19,7 @@ double MapEnergy::value(const Eigen::VectorXd& x, const Density& density, double
 template <typename Density>
 void MapEnergy::derivatives(const Eigen::VectorXd& x, const Density& density, double follow,
                             Eigen::VectorXd& gradient, Eigen::SparseMatrix<double>& hessian) const {
-  Eigen::VectorXd gradientX = Eigen::VectorXd::Zero(basis_.variableCount());
+  Eigen::VectorXd gradientX = Eigen::VectorXd::Zero(offset_.size());
   HessianPattern::Sum sum = pattern_.start();
   for (int f = 0; f < int(local_.size()); ++f) {
     const Jacobian j = jacobian(f, x);
@@ -34,7 +34,7 @@ void MapEnergy::derivatives(const Eigen::VectorXd& x, const Density& density, do
                 follow, gradientX, sum);
   }
   hessian = pattern_.finish(std::move(sum));
-  gradient = basis_.matrix().transpose() * gradientX;
+  gradient = pattern_.basis().transpose() * gradientX;
 }
 
 }  // namespace trimquad

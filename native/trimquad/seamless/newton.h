@@ -7,13 +7,17 @@
 
 namespace trimquad {
 
+/// The density of the distance to the target alone, which is quadratic: one Newton step leads to its least.
+inline MapDensity noDistortion(double, double) {
+  return {0, 0, 0, 0, 0};
+}
+
 /// One projected Newton step, with the unknowns `held` where they are, on `density` + follow * |J - 1|^2,
 /// with backtracking. Returns the relative decrease of the energy. \param keepInjective  stay within nine
 /// tenths of the step at which a first triangle collapses
 template <typename Density>
-double newtonStep(const MapEnergy& energy, const SeamBasis& basis, const Density& density, double follow,
-                  bool keepInjective, SparseSolver& solver, Eigen::VectorXd& z,
-                  const std::vector<int>& held = {}) {
+double newtonStep(const MapEnergy& energy, const Density& density, double follow, bool keepInjective,
+                  SparseSolver& solver, Eigen::VectorXd& z, const std::vector<int>& held = {}) {
   if (z.size() == 0) return 0;
   const Eigen::VectorXd x = energy.coordinates(z);
   Eigen::VectorXd gradient;
@@ -34,7 +38,7 @@ double newtonStep(const MapEnergy& energy, const SeamBasis& basis, const Density
   const Eigen::VectorXd direction = -solver.solve(gradient);
   const double slope = gradient.dot(direction), before = energy.value(x, density, follow);
   if (!(slope < 0)) return 0;
-  const Eigen::VectorXd directionX = basis.basis().matrix() * direction;
+  const Eigen::VectorXd directionX = energy.movement(direction);
   double step = 1;
   if (keepInjective) step = std::min(step, 0.9 * energy.stepToCollapse(x, directionX));
   for (int halving = 0; halving < 40; ++halving, step /= 2) {

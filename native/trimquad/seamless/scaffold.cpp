@@ -152,7 +152,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
       throw stageError("seamless",
                        "a convex embedding of the region is too narrow for floating point; refine the mesh");
     for (int step = 0; step < kStepsPerRound; ++step) {
-      newtonStep(energy, extendedBasis, symmetricDirichlet, follow, true, solver, z, held);
+      newtonStep(energy, symmetricDirichlet, follow, true, solver, z, held);
       ++counters.iterations;
       progress.report(0.5 + 0.5 * (round * kStepsPerRound + step) / (kRounds * kStepsPerRound));
     }

@@ -9,6 +9,7 @@
 #include "trimquad/seamless/local_refinement.h"
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/solve_map.h"
+#include "trimquad/seamless/winding.h"
 
 namespace trimquad {
 namespace {

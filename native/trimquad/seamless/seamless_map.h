@@ -22,7 +22,8 @@ using MapTarget = std::vector<std::array<Eigen::Vector2d, 3>>;
 struct MapCounters {
   int flippedBefore = 0;       ///< triangles that the Poisson solve turned over
   int pathSteps = 0;           ///< steps from a nearby map's constraints to its own
-  int untangleIterations = 0;  ///< Newton steps until none was
+  int neighbourhoods = 0;      ///< of wrong triangles, untangled by themselves
+  int untangleIterations = 0;  ///< Newton steps on the whole map until none was
   int refinements = 0;         ///< rounds of halving edges where triangles stayed turned over
   int halvedEdges = 0;         ///< in these
   int stiffenings = 0;         ///< solves in which the target weighed more where the map went wrong before

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <optional>
 
 #include "trimquad/base/error.h"
@@ -13,6 +12,7 @@
 #include "trimquad/seamless/map_energy.h"
 #include "trimquad/seamless/newton.h"
 #include "trimquad/seamless/stiffening.h"
+#include "trimquad/seamless/untangle.h"
 #include "trimquad/seamless/winding.h"
 
 namespace trimquad {
@@ -136,55 +136,18 @@ bool staysPositive(const SurfaceMesh& mesh, const SeamBasis& basis, const Eigen:
 
 }  // namespace
 
-void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
-              SparseSolver& solver, StepBudget& budget, const Progress& progress) {
-  double least = energy.smallestDeterminant(energy.coordinates(z));
-  if (least > 0) return;
-  // Where it works, every few rounds halve the depth of the deepest fold, or turn triangles back, or leave
-  // less area turned over. Energies go on falling for hundreds of steps where it does not. The first round
-  // spreads deep folds over many triangles: what it leaves is what the others have to be better than.
-  constexpr int kRounds = 40, kStepsPerRound = 8, kPatience = 4;
-  constexpr double kDense = 0.25;  // a multiplication in dense blocks takes so much of the others' time
-  int fewest = std::numeric_limits<int>::max();
-  double shallowest = least, smallest = std::numeric_limits<double>::infinity();
-  for (int round = 0, idle = 0; round < kRounds && idle < kPatience; ++round) {
-    const double depth = std::min(0.0, least), epsilon = std::sqrt(1e-12 + 0.04 * depth * depth);
-    const auto density = [&](double I, double D) { return foldoverFree(I, D, epsilon); };
-    const double roundStart = least;
-    for (int step = 0; step < kStepsPerRound; ++step) {
-      progress.check();
-      if (budget.spent()) return;
-      const double decrease = newtonStep(energy, basis, density, 0, false, solver, z);
-      ++iterations;
-      budget.spend(energy.stepWork() + kDense * solver.work());
-      least = energy.smallestDeterminant(energy.coordinates(z));
-      if (least > 0) return;
-      if (least > roundStart / 2 || decrease < 1e-5) break;
-    }
-    const Eigen::VectorXd x = energy.coordinates(z);
-    const int flipped = energy.flipped(x);
-    const double turned = energy.value(x, turnedArea, 0);
-    idle = least > shallowest / 2 || flipped < fewest || turned < smallest / 2 ? 0 : idle + 1;
-    fewest = std::min(fewest, flipped);
-    shallowest = std::max(shallowest, least);
-    smallest = std::min(smallest, turned);
-  }
-}
-
-Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis, SparseSolver& solver) {
-  // The squared distance to the target alone: its first Newton step from anywhere is the solution.
-  const auto none = [](double, double) { return MapDensity{0, 0, 0, 0, 0}; };
-  Eigen::VectorXd z = Eigen::VectorXd::Zero(basis.basis().freeCount()), gradient;
+Eigen::VectorXd leastSquares(const MapEnergy& energy, SparseSolver& solver) {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(energy.unknownCount()), gradient;
   if (z.size() == 0) return z;
   Eigen::SparseMatrix<double> hessian;
-  energy.derivatives(energy.coordinates(z), none, 1, gradient, hessian);
+  energy.derivatives(energy.coordinates(z), noDistortion, 1, gradient, hessian);
   solver.factorize(hessian);
   return z - solver.solve(gradient);
 }
 
 Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis) {
   SparseSolver solver("seamless");
-  return leastSquares(MapEnergy(mesh, target, basis), basis, solver);
+  return leastSquares(MapEnergy(mesh, target, basis), solver);
 }
 
 bool isInjective(const MapProblem& problem, const MapEnergy& energy, const Eigen::VectorXd& z) {
@@ -213,7 +176,7 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
   SparseSolver solver(stage);
   MapEnergy even = energy;
   even.aim(*starts.front().target);
-  Eigen::VectorXd z = leastSquares(even, basis, solver);
+  Eigen::VectorXd z = leastSquares(even, solver);
   progress.report(0.2);
   counters.flippedBefore = energy.flipped(energy.coordinates(z));
   constexpr double kEasy = 1e-3;  // of the triangles
@@ -222,8 +185,8 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
   if (effort == Effort::Easy && isHard) maps.reached.push_back(z);
   if (!maps.reached.empty() || maps.injective) return maps;
   if (nearby)
-    if (const auto moved = followConstraints(mesh, energy, index, basis, follow, *nearby, counters.pathSteps,
-                                             solver, budget, progress);
+    if (const auto moved = followConstraints(mesh, energy, index, basis, follow, *nearby, counters, solver,
+                                             budget, progress);
         moved && isInjective(problem, energy, *moved)) {
       maps.injective = moved;
       return maps;
@@ -232,8 +195,11 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
     ++counters.starts;
     even.aim(*start.target);
     even.evenOut(start.evenness);
-    z = leastSquares(even, basis, solver);
-    untangle(even, basis, z, counters.untangleIterations, solver, budget, progress);
+    const auto wrong = [&](const Eigen::VectorXd& map) {
+      return wrongTriangles(mesh, index, basis, energy, energy.coordinates(map));
+    };
+    z = leastSquares(even, solver);
+    untangle(even, wrong, z, counters, solver, budget, progress);
     maps.reached.push_back(z);
     if (!isInjective(problem, energy, z)) continue;
     maps.injective = z;
@@ -266,8 +232,7 @@ void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counte
   SparseSolver solver(problem.stage);
   const int most = counters.convexStart ? 200 : 50;
   for (int i = 0; i < most; ++i) {
-    const double decrease =
-        newtonStep(energy, problem.basis, symmetricDirichlet, problem.follow, true, solver, z);
+    const double decrease = newtonStep(energy, symmetricDirichlet, problem.follow, true, solver, z);
     ++counters.iterations;
     progress.report(0.5 + 0.5 * i / most);
     if (decrease < kConverged) break;

@@ -13,12 +13,7 @@
 namespace trimquad {
 
 /// The map, z, with the least squared distance to the energy's target.
-Eigen::VectorXd leastSquares(const MapEnergy& energy, const SeamBasis& basis, SparseSolver& solver);
-
-/// Newton steps on the foldover-free energy until no triangle is flipped, or no progress is made, or the
-/// budget is spent.
-void untangle(const MapEnergy& energy, const SeamBasis& basis, Eigen::VectorXd& z, int& iterations,
-              SparseSolver& solver, StepBudget& budget, const Progress& progress);
+Eigen::VectorXd leastSquares(const MapEnergy& energy, SparseSolver& solver);
 
 /// The Poisson map: the least-squares fit of the target over the basis, z. Triangles may be flipped.
 Eigen::VectorXd poissonMap(const SurfaceMesh& mesh, const MapTarget& target, const SeamBasis& basis);

@@ -19,6 +19,8 @@ class StepBudget {
     left_ -= aside;
     return aside;
   }
+  /// The same with all but so much of what is left.
+  double setAsideAllBut(double work) { return left_ > work ? setAside(1 - work / left_) : 0; }
   void add(double work) { left_ += work; }
 
  private:

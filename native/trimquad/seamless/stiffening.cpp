@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "trimquad/seamless/solve_map.h"
+#include "trimquad/seamless/untangle.h"
 #include "trimquad/seamless/winding.h"
 
 namespace trimquad {
@@ -37,6 +38,9 @@ std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapSt
   MapEnergy energy(mesh, *start.target, basis);
   energy.evenOut(start.evenness);
   SparseSolver solver("seamless");
+  const auto wrongIn = [&](const Eigen::VectorXd& map) {
+    return wrongTriangles(mesh, index, basis, energy, energy.coordinates(map));
+  };
   size_t fewest = std::numeric_limits<size_t>::max();
   for (int round = 0, idle = 0; round < kRounds && idle < kPatience && !budget.spent(); ++round) {
     progress.check();
@@ -48,9 +52,9 @@ std::optional<Eigen::VectorXd> stiffenedMap(const SurfaceMesh& mesh, const MapSt
     std::vector<double> factor(mesh.n_faces());
     for (size_t f = 0; f < factor.size(); ++f) factor[f] = inside[f] ? kFactor : 1;
     energy.stiffen(factor);
-    z = leastSquares(energy, basis, solver);
+    z = leastSquares(energy, solver);
     ++counters.stiffenings;
-    untangle(energy, basis, z, counters.untangleIterations, solver, budget, progress);
+    untangle(energy, wrongIn, z, counters, solver, budget, progress);
   }
   return std::nullopt;
 }

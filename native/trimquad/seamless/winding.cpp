@@ -33,4 +33,21 @@ std::vector<VertexHandle> troubled(const SurfaceMesh& mesh, const std::vector<in
   return vertices;
 }
 
+std::vector<FaceHandle> wrongTriangles(const SurfaceMesh& mesh, const std::vector<int>& index,
+                                       const SeamBasis& basis, const MapEnergy& energy,
+                                       const Eigen::VectorXd& x) {
+  std::vector<char> wrong(mesh.n_faces(), 0);
+  constexpr double kCollapsed = 1e-9;  // relative to |J|^2
+  for (const auto f : mesh.faces()) {
+    const auto jacobian = energy.jacobian(f.idx(), x);
+    wrong[f.idx()] = !(jacobian.det() > kCollapsed * jacobian.norm2());
+  }
+  for (const auto v : wrongCones(mesh, index, basis, x))
+    for (const auto f : mesh.vf_range(v)) wrong[f.idx()] = 1;
+  std::vector<FaceHandle> triangles;
+  for (const auto f : mesh.faces())
+    if (wrong[f.idx()]) triangles.push_back(f);
+  return triangles;
+}
+
 }  // namespace trimquad

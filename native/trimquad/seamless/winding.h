@@ -16,4 +16,10 @@ std::vector<VertexHandle> wrongCones(const SurfaceMesh& mesh, const std::vector<
 std::vector<VertexHandle> troubled(const SurfaceMesh& mesh, const std::vector<int>& index,
                                    const SeamBasis& basis, const MapEnergy& energy, const Eigen::VectorXd& x);
 
+/// The triangles that a map x turns over or collapses, and those around vertices that it winds around too
+/// often or too rarely. Ascending.
+std::vector<FaceHandle> wrongTriangles(const SurfaceMesh& mesh, const std::vector<int>& index,
+                                       const SeamBasis& basis, const MapEnergy& energy,
+                                       const Eigen::VectorXd& x);
+
 }  // namespace trimquad

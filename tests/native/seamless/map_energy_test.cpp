@@ -36,7 +36,7 @@ TEST(HessianPattern, gathersWhatTheBasisMatrixGives) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     const Problem problem(seed);
-    const HessianPattern pattern(problem.basis, problem.triangles);
+    const HessianPattern pattern(problem.basis.matrix(), problem.triangles);
     std::srand(seed);
     HessianPattern::Sum sum = pattern.start();
     const int variables = problem.basis.variableCount();
@@ -62,7 +62,7 @@ TEST(HessianPattern, hasEveryDiagonalAndSortedColumns) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE(seed);
     const Problem problem(seed);
-    const Eigen::SparseMatrix<double> copy = HessianPattern(problem.basis, problem.triangles).zero();
+    const Eigen::SparseMatrix<double> copy = HessianPattern(problem.basis.matrix(), problem.triangles).zero();
     for (int j = 0; j < copy.cols(); ++j) {
       int previous = -1;
       bool diagonal = false;
