@@ -32,9 +32,11 @@ class GridGraph {
     addArcs(pieceCount);
     for (const auto& patch : tmesh.patches) addInside(patch);
     std::sort(edges_.begin(), edges_.end());
+    std::sort(quads_.begin(), quads_.end());
   }
 
-  /// Groups of edges between the same two points, and edges from a point to itself.
+  /// Groups of edges between the same two points, edges from a point to itself, and the sides of quads that
+  /// have all their corners in common.
   std::vector<std::vector<Edge>> shortLoops() const {
     std::vector<std::vector<Edge>> loops;
     for (auto first = edges_.begin(); first != edges_.end();) {
@@ -43,10 +45,22 @@ class GridGraph {
       if (end - first > 1 || first->low == first->high) loops.emplace_back(first, end);
       first = end;
     }
+    for (auto first = quads_.begin(); first != quads_.end();) {
+      const auto end =
+          std::find_if(first, quads_.end(), [&](const Quad& q) { return q.corners != first->corners; });
+      if (end - first > 1) loops.push_back({{0, 0, first->across}});
+      first = end;
+    }
     return loops;
   }
 
  private:
+  struct Quad {
+    std::array<int, 4> corners;  ///< ascending
+    std::array<ArcId, 2> across;
+    friend auto operator<=>(const Quad& a, const Quad& b) = default;
+  };
+
   struct Walk {
     std::vector<int> points, pieces;
     std::vector<ArcId> arcs;  ///< by piece
@@ -116,6 +130,12 @@ class GridGraph {
     for (int i = 1; i < width; ++i)
       for (int j = 0; j < height; ++j)
         add(point(i, j), point(i, j + 1), side[1].arcs[j], side[3].arcs[height - 1 - j]);
+    for (int i = 0; i < width; ++i)
+      for (int j = 0; j < height; ++j) {
+        std::array<int, 4> corners{point(i, j), point(i + 1, j), point(i, j + 1), point(i + 1, j + 1)};
+        std::sort(corners.begin(), corners.end());
+        quads_.push_back({corners, {side[0].arcs[i], side[1].arcs[j]}});
+      }
     nextPoint_ += std::max(0, width - 1) * std::max(0, height - 1);
   }
 
@@ -125,6 +145,7 @@ class GridGraph {
   DisjointSets points_, pieces_;
   int nextPoint_;
   std::vector<Edge> edges_;
+  std::vector<Quad> quads_;
 };
 
 /// A loop needs two circuits at most, and those of a round may leave others as they are. More rounds mean

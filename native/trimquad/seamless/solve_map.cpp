@@ -267,7 +267,7 @@ void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counte
   const int most = counters.convexStart ? 200 : 50;
   for (int i = 0; i < most; ++i) {
     const double decrease =
-        newtonStep(energy, problem.basis, symmetricDirichlet, problem.follow, true, solver, z);
+        newtonStep(energy, problem.basis, straightDirichlet, problem.follow, true, solver, z);
     ++counters.iterations;
     progress.report(0.5 + 0.5 * i / most);
     if (decrease < kConverged) break;
