@@ -91,6 +91,7 @@ def _quantization_report(quantization):
         "objective": quantization.objective,
         "lower_bound": quantization.lower_bound,
         "steps": quantization.steps,
+        "widened": quantization.widened,
     }
 
 

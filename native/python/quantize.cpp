@@ -25,6 +25,7 @@ void bindQuantize(py::module_& m) {
       .def_readonly("objective", &Quantization::objective)
       .def_readonly("lower_bound", &Quantization::lowerBound)
       .def_readonly("steps", &Quantization::steps)
+      .def_readonly("widened", &Quantization::widened)
       .def_readonly("zero_arcs", &Quantization::zeroArcs)
       .def_readonly("zero_patches", &Quantization::zeroPatches);
   m.def(

@@ -256,3 +256,30 @@ def test_textures_of_several_regions_share_a_material_and_go_with_their_result(t
     options.write = ["report"]
     trimquad.convert(Part.makePlane(30, 20), options).write(str(tmp_path))
     assert [p.name for p in tmp_path.iterdir()] == ["report.json"]
+
+
+def thin_torus(radius, thickness, around=48, across=12):
+    u, v = numpy.meshgrid(numpy.arange(around), numpy.arange(across), indexing="ij")
+    a, b = 2 * numpy.pi * u / around, 2 * numpy.pi * v / across
+    ring = radius + thickness * numpy.cos(b)
+    points = numpy.stack([ring * numpy.cos(a), ring * numpy.sin(a), thickness * numpy.sin(b)], axis=-1).reshape(-1, 3)
+    at = lambda i, j: (i % around) * across + j % across  # noqa: E731
+    triangles = [t for i in range(around) for j in range(across)
+                 for t in ((at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1)))]
+    return points, numpy.array(triangles)
+
+
+@pytest.mark.parametrize("route", ["auto", "reembed"])
+def test_around_a_handle_narrower_than_a_quad_there_are_three(route):
+    options = trimquad.Options(edge_length=20, features="ignore", route=route, write=["quads"])
+    region = trimquad.convert(thin_torus(40, 3), options).regions[0]
+    assert region.error is None
+    assert region.edge_length == 20
+    polygons = region.polygons
+    sides = Counter()
+    for quad in polygons.full:
+        assert len(set(quad)) == 4
+        sides.update(zip(quad, (*quad[1:], quad[0])))
+    assert set(sides.values()) == {1}
+    assert len(polygons.points) - len(sides) // 2 + len(polygons.full) == 0
+    assert len(polygons.full) % 3 == 0

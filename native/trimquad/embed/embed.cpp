@@ -85,12 +85,16 @@ void dropRemoved(EmbeddedTMesh& embedded) {
   for (NodeId& n : embedded.nodeOf) n = node[n.index];
 }
 
-int snapEmbedded(const SurfaceMesh& input, EmbeddedTMesh& embedded) {
+void snapEmbedded(const SurfaceMesh& input, EmbeddedTMesh& embedded) {
   std::vector<VertexHandle*> nodes;
   for (auto& node : embedded.nodes) nodes.push_back(&node.vertex);
   std::vector<EdgePath*> paths;
   for (auto& arc : embedded.arcs) paths.push_back(&arc.path);
-  return snap(input, embedded.surface, nodes, paths);
+  snap(input, embedded.surface, nodes, paths);
+  const auto renamed = compact(embedded.surface);
+  for (VertexHandle* node : nodes) *node = renamed[node->idx()];
+  for (EdgePath* path : paths)
+    for (VertexHandle& v : *path) v = renamed[v.idx()];
 }
 
 }  // namespace
@@ -102,14 +106,13 @@ EmbeddedTMesh embed(const Parametrization& map, const TMesh& tmesh, const Quanti
   CutSurface cut = insertArcs(map, tmesh);
   EmbeddedTMesh::Counters counters;
   counters.crossings = int(cut.surface.mesh.n_vertices() - input.n_vertices());
-  relax(input, cut.surface);
   progress.report(0.3);
   counters.snapped = snapCut(input, cut);
   progress.report(0.5);
   embedVirtualArcs(input, tmesh, cut, counters.splits);
   EmbeddedTMesh embedded = assembled(tmesh, quantization, std::move(cut));
   embedded.counters = counters;
-  verify(embedded);
+  if (afterOperation) afterOperation(embedded);
   collapseZeros(input, embedded, progress, afterOperation);
   dropRemoved(embedded);
   progress.report(0.8);

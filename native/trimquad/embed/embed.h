@@ -12,8 +12,8 @@ namespace trimquad {
 /// patches of quantized area zero are gone (paper, section 6.1): what is left are patches that are rectangles
 /// of positive integer size, each a disk of triangles. The mesh is refined where that is necessary; critical
 /// nodes, aligned edges and the boundary stay where they are. The arcs' homotopy classes are those of the
-/// map. The lengths must be separating, as `quantize` promises. \param afterOperation  called after each
-/// operator, for tests
+/// map. The lengths must be separating, as `quantize` promises. \param afterOperation  called before
+/// the first operator and after each, for tests
 EmbeddedTMesh embed(const Parametrization& map, const TMesh& tmesh, const Quantization& quantization,
                     const Progress& progress,
                     const std::function<void(const EmbeddedTMesh&)>& afterOperation = {});

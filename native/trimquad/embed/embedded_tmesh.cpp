@@ -1,6 +1,8 @@
 #include "trimquad/embed/embedded_tmesh.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 
 #include "trimquad/base/error.h"
 
@@ -48,54 +50,82 @@ class Occupation {
   std::vector<bool> vertex_, edge_;
 };
 
-/// Walks the patch's loop and the triangles inside. Returns how many these are.
-std::size_t verifyPatch(const EmbeddedTMesh& embedded, PatchId id, const Occupation& occupied,
-                        std::vector<bool>& covered) {
-  const auto& mesh = embedded.surface.mesh;
-  std::vector<HalfedgeHandle> rim;
-  const auto loop = embedded.loop(id);
-  TRIMQUAD_ASSERT(!loop.empty());
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    TRIMQUAD_ASSERT(embedded.end(loop[k]) == embedded.start(loop[(k + 1) % loop.size()]));
-    for (const auto h : embedded.halfedges(loop[k])) rim.push_back(h);
+/// Walks loops of patches and the triangles inside.
+class PatchWalk {
+ public:
+  PatchWalk(const EmbeddedTMesh& embedded, const Occupation& occupied)
+      : embedded_(embedded),
+        mesh_(embedded.surface.mesh),
+        occupied_(occupied),
+        covered_(mesh_.n_faces(), false),
+        counted_(mesh_.n_vertices()) {}
+
+  void verify(PatchId id) {
+    const auto rim = rimOf(id);
+    inside_.clear();
+    TRIMQUAD_ASSERT(!covered_[mesh_.face_handle(rim.front()).idx()]);
+    reach(mesh_.face_handle(rim.front()));
+    int corners = 0, onRim = 0;
+    std::size_t innerSides = 0;
+    for (std::size_t k = 0; k < inside_.size(); ++k)
+      for (const auto h : mesh_.fh_range(inside_[k])) {
+        corners += isFirstMeeting(mesh_.to_vertex_handle(h), 2 * id.index);
+        if (occupied_[mesh_.edge_handle(h)]) continue;
+        ++innerSides;
+        reach(mesh_.opposite_face_handle(h));
+      }
+    // A disk: its open part has the characteristic 1, and its loop is all there is of its rim.
+    TRIMQUAD_ASSERT(3 * inside_.size() == innerSides + rim.size());
+    for (const auto h : rim) onRim += isFirstMeeting(mesh_.to_vertex_handle(h), 2 * id.index + 1);
+    TRIMQUAD_ASSERT(corners - onRim - int(innerSides / 2) + int(inside_.size()) == 1);
+    triangles_ += inside_.size();
   }
-  // Within the patch each piece of the loop is followed by the next one.
-  for (std::size_t k = 0; k < rim.size(); ++k) {
-    const HalfedgeHandle next = rim[(k + 1) % rim.size()];
-    TRIMQUAD_ASSERT(mesh.face_handle(next).is_valid());
-    HalfedgeHandle back = mesh.prev_halfedge_handle(next);
-    while (!occupied[mesh.edge_handle(back)])
-      back = mesh.prev_halfedge_handle(mesh.opposite_halfedge_handle(back));
-    TRIMQUAD_ASSERT(back == rim[k]);
+
+  bool coversAll() const {
+    return std::ptrdiff_t(triangles_) == std::distance(mesh_.faces_sbegin(), mesh_.faces_end());
   }
-  std::vector<FaceHandle> inside;
-  const auto reach = [&](FaceHandle f) {
-    if (covered[f.idx()]) return;
-    covered[f.idx()] = true;
-    inside.push_back(f);
-  };
-  TRIMQUAD_ASSERT(!covered[mesh.face_handle(rim.front()).idx()]);
-  reach(mesh.face_handle(rim.front()));
-  int innerSides = 0;
-  std::vector<VertexHandle> corners;
-  for (std::size_t k = 0; k < inside.size(); ++k)
-    for (const auto h : mesh.fh_range(inside[k])) {
-      corners.push_back(mesh.to_vertex_handle(h));
-      if (occupied[mesh.edge_handle(h)]) continue;
-      ++innerSides;
-      reach(mesh.opposite_face_handle(h));
+
+ private:
+  std::vector<HalfedgeHandle> rimOf(PatchId id) const {
+    std::vector<HalfedgeHandle> rim;
+    const auto loop = embedded_.loop(id);
+    TRIMQUAD_ASSERT(!loop.empty());
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      TRIMQUAD_ASSERT(embedded_.end(loop[k]) == embedded_.start(loop[(k + 1) % loop.size()]));
+      for (const auto h : embedded_.halfedges(loop[k])) rim.push_back(h);
     }
-  // A disk: its open part has the characteristic 1, and its loop is all there is of its rim.
-  TRIMQUAD_ASSERT(3 * inside.size() == std::size_t(innerSides) + rim.size());
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  std::vector<VertexHandle> onRim;
-  for (const auto h : rim) onRim.push_back(mesh.to_vertex_handle(h));
-  std::sort(onRim.begin(), onRim.end());
-  onRim.erase(std::unique(onRim.begin(), onRim.end()), onRim.end());
-  TRIMQUAD_ASSERT(int(corners.size() - onRim.size()) - innerSides / 2 + int(inside.size()) == 1);
-  return inside.size();
-}
+    // Within the patch each piece of the loop is followed by the next one.
+    for (std::size_t k = 0; k < rim.size(); ++k) {
+      const HalfedgeHandle next = rim[(k + 1) % rim.size()];
+      TRIMQUAD_ASSERT(mesh_.face_handle(next).is_valid());
+      HalfedgeHandle back = mesh_.prev_halfedge_handle(next);
+      while (!occupied_[mesh_.edge_handle(back)])
+        back = mesh_.prev_halfedge_handle(mesh_.opposite_halfedge_handle(back));
+      TRIMQUAD_ASSERT(back == rim[k]);
+    }
+    return rim;
+  }
+
+  void reach(FaceHandle f) {
+    if (covered_[f.idx()]) return;
+    covered_[f.idx()] = true;
+    inside_.push_back(f);
+  }
+
+  bool isFirstMeeting(VertexHandle v, int round) {
+    if (counted_[v.idx()] == round) return false;
+    counted_[v.idx()] = round;
+    return true;
+  }
+
+  const EmbeddedTMesh& embedded_;
+  const SurfaceMesh& mesh_;
+  const Occupation& occupied_;
+  std::vector<bool> covered_;
+  std::vector<std::optional<int>> counted_;  ///< by vertex: in which round last
+  std::vector<FaceHandle> inside_;
+  std::size_t triangles_ = 0;
+};
 
 }  // namespace
 
@@ -130,17 +160,16 @@ int EmbeddedTMesh::length(const Side& side) const {
 void verify(const EmbeddedTMesh& embedded) {
   const Occupation occupied(embedded);
   std::vector<int> uses(2 * embedded.arcs.size(), 0);
-  std::vector<bool> covered(embedded.surface.mesh.n_faces(), false);
-  std::size_t triangles = 0;
+  PatchWalk walk(embedded, occupied);
   for (std::size_t p = 0; p < embedded.patches.size(); ++p) {
     const auto& patch = embedded.patches[p];
     if (patch.removed) continue;
     for (const HalfArc h : embedded.loop(PatchId{int(p)})) ++uses[h.index()];
     for (const int k : {0, 1})
       TRIMQUAD_ASSERT(embedded.length(patch.sides[k]) == embedded.length(patch.sides[k + 2]));
-    triangles += verifyPatch(embedded, PatchId{int(p)}, occupied, covered);
+    walk.verify(PatchId{int(p)});
   }
-  TRIMQUAD_ASSERT(triangles == embedded.surface.mesh.n_faces());
+  TRIMQUAD_ASSERT(walk.coversAll());
   for (std::size_t a = 0; a < embedded.arcs.size(); ++a) {
     const auto& arc = embedded.arcs[a];
     TRIMQUAD_ASSERT(uses[2 * a] <= 1 && uses[2 * a + 1] <= 1);

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/replace_triangles.h"
 
 namespace trimquad {
 namespace {
@@ -63,25 +64,28 @@ class Insertion {
  public:
   Insertion(const Parametrization& map, const TMesh& tmesh)
       : map_(map), input_(map.mesh), tmesh_(tmesh), onEdge_(input_.n_edges()), segments_(input_.n_faces()) {
-    for (const auto v : input_.vertices()) addVertex({v});
+    result_.surface = unrefined(input_);
   }
 
   CutSurface run() && {
     for (const auto& node : tmesh_.nodes)
       result_.node.push_back(node.place ? std::optional(vertexAt(*node.place)) : std::nullopt);
     for (const auto& arc : tmesh_.arcs) result_.arc.push_back(pathOf(arc));
-    for (const auto e : input_.edges()) sortAlong(e);
+    std::sort(crossed_.begin(), crossed_.end());
+    for (const auto e : crossed_) sortAlong(e);
     for (const auto& red : tmesh_.redSegments) result_.redSegment.push_back(pathOf(red));
-    for (const auto f : input_.faces()) cut(f);
-    result_.surface.mesh = buildSurfaceMesh(soup_);
+    for (const auto f : cutTriangles())
+      for (const Cell& cell : cellsOf(f)) triangulate(cell, f);
+    replaceTriangles(result_.surface.mesh, parts_, crossed_);
+    for (std::size_t p = 1; p < parts_.size(); ++p)
+      if (parts_[p].whole == parts_[p - 1].whole) result_.surface.faceOrigin.push_back(parts_[p].whole.idx());
     return std::move(result_);
   }
 
  private:
   VertexHandle addVertex(const Origin& origin) {
-    soup_.points.push_back(placeInSpace(input_, origin));
     result_.surface.vertexOrigin.push_back(origin);
-    return VertexHandle(int(soup_.points.size()) - 1);
+    return result_.surface.mesh.add_vertex(placeInSpace(input_, origin));
   }
 
   VertexHandle vertexAt(const SurfacePoint& x) {
@@ -90,7 +94,10 @@ class Insertion {
     if (found != vertexOf_.end()) return found->second;
     const VertexHandle v = addVertex(originOf(map_, x));
     vertexOf_[x] = v;
-    if (const auto* e = std::get_if<EdgeHandle>(&x.element)) onEdge_[e->idx()].push_back({x, v});
+    if (const auto* e = std::get_if<EdgeHandle>(&x.element)) {
+      if (onEdge_[e->idx()].empty()) crossed_.push_back(*e);
+      onEdge_[e->idx()].push_back({x, v});
+    }
     return v;
   }
 
@@ -124,17 +131,18 @@ class Insertion {
     if (side != input_.halfedge_handle(e, 0)) std::reverse(points.begin(), points.end());
   }
 
-  void cut(FaceHandle f) {
-    const auto crossed = [&](HalfedgeHandle h) { return !onEdge_[input_.edge_handle(h).idx()].empty(); };
-    const auto sides = input_.fh_range(f);
-    if (segments_[f.idx()].empty() && std::none_of(sides.begin(), sides.end(), crossed)) {
-      auto& corner = soup_.triangles.emplace_back();
-      int k = 0;
-      for (const auto h : sides) corner[k++] = input_.from_vertex_handle(h).idx();
-      result_.surface.faceOrigin.push_back(f.idx());
-      return;
-    }
-    for (const Cell& cell : cellsOf(f)) triangulate(cell, f);
+  /// Those that an arc passes through or has a vertex on, ascending.
+  std::vector<FaceHandle> cutTriangles() const {
+    std::vector<FaceHandle> triangles;
+    for (const auto f : input_.faces())
+      if (!segments_[f.idx()].empty()) triangles.push_back(f);
+    for (const auto e : crossed_)
+      for (const int k : {0, 1})
+        if (const auto f = input_.face_handle(input_.halfedge_handle(e, k)); f.is_valid())
+          triangles.push_back(f);
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    return triangles;
   }
 
   /// The triangle's outline with all points on it.
@@ -223,8 +231,7 @@ class Insertion {
   void triangulate(const Cell& cell, FaceHandle f) {
     const std::size_t n = cell.vertex.size();
     if (n == 3) {
-      soup_.triangles.push_back({cell.vertex[0].idx(), cell.vertex[1].idx(), cell.vertex[2].idx()});
-      result_.surface.faceOrigin.push_back(f.idx());
+      parts_.push_back({f, {cell.vertex[0], cell.vertex[1], cell.vertex[2]}});
       return;
     }
     // Cut along the shortest diagonal that does not run along a side.
@@ -234,8 +241,8 @@ class Insertion {
         const Line &a = cell.line[i], &b = cell.line[(i + n - 1) % n], &c = cell.line[j],
                    &d = cell.line[j - 1];
         if (a == c || a == d || b == c || b == d) continue;
-        const double length =
-            (soup_.points[cell.vertex[i].idx()] - soup_.points[cell.vertex[j].idx()]).squaredNorm();
+        const auto& mesh = result_.surface.mesh;
+        const double length = (mesh.point(cell.vertex[i]) - mesh.point(cell.vertex[j])).squaredNorm();
         if (!best || length < std::get<0>(*best)) best = {length, i, j};
       }
     TRIMQUAD_ASSERT(best);
@@ -266,7 +273,8 @@ class Insertion {
   std::vector<std::vector<std::pair<SurfacePoint, VertexHandle>>> onEdge_;  ///< by edge
   std::vector<std::vector<Segment>> segments_;                              ///< by face
   std::map<SurfacePoint, VertexHandle> vertexOf_;
-  TriangleSoup soup_;
+  std::vector<EdgeHandle> crossed_;
+  std::vector<TrianglePart> parts_;
   CutSurface result_;
 };
 

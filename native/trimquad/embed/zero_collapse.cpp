@@ -17,6 +17,7 @@ class ZeroCollapse {
         mesh_(embedded.surface.mesh),
         patchOf_(2 * embedded.arcs.size()),
         leaving_(embedded.nodes.size()),
+        search_(input, embedded.surface, occupied_),
         zeros_(embedded) {
     occupied_.grow(mesh_);
     for (const auto& node : t_.nodes) occupied_.vertex[node.vertex.idx()] = true;
@@ -120,9 +121,7 @@ class ZeroCollapse {
   PatchCorner cornerAtStart(HalfArc h) const { return {lastHalfedge(previousInLoop(h)), firstHalfedge(h)}; }
   PatchCorner cornerAtEnd(HalfArc h) const { return cornerAtStart(nextInLoop(h)); }
 
-  EdgePath connect(PatchCorner from, PatchCorner to) {
-    return connectCorners(input_, t_.surface, occupied_, from, to, t_.counters.splits);
-  }
+  EdgePath connect(PatchCorner from, PatchCorner to) { return search_.connect(from, to, t_.counters.splits); }
 
   void setPath(HalfArc h, EdgePath path) {
     if (!h.forward) std::reverse(path.begin(), path.end());
@@ -361,6 +360,7 @@ class ZeroCollapse {
   std::vector<std::optional<PatchId>> patchOf_;  ///< by half-arc
   std::vector<std::vector<HalfArc>> leaving_;    ///< by node
   Occupied occupied_;
+  PathSearch search_;
   ZeroIndex zeros_;
 };
 

@@ -20,11 +20,11 @@ int quarters(double x) {
   return int(std::lround(count));
 }
 
-/// Lets no vertex have a cone without an angle, index 4 and above, as the tip of a spike would: a quarter
-/// turn at a time goes to the neighbour of least index, across whose edge the field then turns by more than
-/// it must.
+/// Lets no vertex have fewer than two quads, index 3 and above, as the tip of a spike would: a single quad
+/// borders itself there, and index 4 is a cone without an angle. A quarter turn at a time goes to the
+/// neighbour of least index, across whose edge the field then turns by more than it must.
 void spreadSpikes(const SurfaceMesh& mesh, std::vector<double>& turn, CrossField& field) {
-  constexpr int kMost = 3;
+  constexpr int kMost = 2;
   for (const auto v : mesh.vertices())
     while (field.index[v.idx()] > kMost) {
       std::optional<HalfedgeHandle> best;

@@ -6,8 +6,8 @@
 namespace trimquad {
 
 /// Fills in the matchings, indices and loop turns of a field that has its directions only: across every edge
-/// the field makes the smallest turn, unless a vertex would get an index of 4 or more, a cone without an
-/// angle: that is shared with its neighbours. Asserts that indices and turns add up to the Euler
+/// the field makes the smallest turn, unless a vertex would get an index of 3 or more, a single quad or
+/// none: that is shared with its neighbours. Asserts that indices and turns add up to the Euler
 /// characteristic (Poincare-Hopf).
 void settleTopology(const SurfaceMesh& mesh, const Transport& transport, CrossField& field);
 

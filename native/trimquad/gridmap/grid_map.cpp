@@ -40,7 +40,10 @@ Eigen::VectorXd coordinatesOf(const SeamlessMap& map, const SeamBasis& basis) {
   return x;
 }
 
-/// The translation of a tube's seam, rounded; the longer part of it is no less than a quad.
+/// With fewer around a tube, its quads would share more than a side.
+constexpr int kLeastAround = 3;
+
+/// The translation of a tube's seam, rounded; the longer part of it is no less than `kLeastAround` quads.
 BranchTranslation wholePeriod(const SeamlessMap& map) {
   for (const auto h : map.mesh.halfedges()) {
     const auto& crossing = map.seams.crossing[h.idx()];
@@ -48,7 +51,7 @@ BranchTranslation wholePeriod(const SeamlessMap& map) {
     const Eigen::Vector2d period = map.scale.toQuads(map.transition(h).translation);
     const int axis = std::abs(period[0]) >= std::abs(period[1]) ? 0 : 1;
     BranchTranslation whole;
-    whole[axis] = std::max(1, int(std::lround(std::abs(period[axis])))) * (period[axis] < 0 ? -1 : 1);
+    whole[axis] = std::max(kLeastAround, int(std::lround(std::abs(period[axis])))) * (period[axis] < 0 ? -1 : 1);
     whole[1 - axis] = int(std::lround(period[1 - axis]));
     return whole;
   }

@@ -66,7 +66,7 @@ GridMap optimizedPatchMap(const SeamlessMap& seamless, const PatchMap& patches, 
   }
   result.counters.distortionStart = energy.meanSymmetricDirichlet(energy.coordinates(z));
   for (int i = 0; i < kMostSteps; ++i) {
-    const double decrease = newtonStep(energy, symmetricDirichlet, seamless.follow, true, solver, z);
+    const double decrease = newtonStep(energy, straightDirichlet, seamless.follow, true, solver, z);
     ++result.counters.iterations;
     progress.report(double(i) / kMostSteps);
     if (decrease < kConverged) break;

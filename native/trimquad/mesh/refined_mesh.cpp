@@ -84,6 +84,24 @@ Origin amongNeighbours(const SurfaceMesh& input, const RefinedMesh& refined, Ver
   return mean;
 }
 
+/// Moves the vertex so that its smallest triangle becomes larger, if that is small. Whether it did.
+bool moveApart(const SurfaceMesh& input, RefinedMesh& refined, VertexHandle v) {
+  const Origin before = refined.vertexOrigin[v.idx()];
+  const double least = smallestTriangle(input, refined, v, before);
+  if (least > kGood) return false;
+  const Origin goal = amongNeighbours(input, refined, v);
+  for (const double step : {1.0, 0.5, 0.2}) {
+    Origin place = before;
+    place.weights = (1 - step) * before.weights + step * goal.weights;
+    const double next = smallestTriangle(input, refined, v, place);
+    if (next <= 0 || next <= kBetter * least) continue;
+    refined.vertexOrigin[v.idx()] = place;
+    refined.mesh.set_point(v, placeInSpace(input, place));
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 RefinedMesh unrefined(const SurfaceMesh& input) {
@@ -97,14 +115,12 @@ RefinedMesh unrefined(const SurfaceMesh& input) {
 Vector3d barycentric(const SurfaceMesh& input, FaceHandle f, const Origin& origin) {
   if (std::holds_alternative<FaceHandle>(origin.element)) return origin.weights;
   Vector3d weights = Vector3d::Zero();
+  const HalfedgeHandle first = input.halfedge_handle(f), second = input.next_halfedge_handle(first);
   const auto put = [&](VertexHandle v, double weight) {
-    int k = 0;
-    for (auto h = input.halfedge_handle(f); k < 3; ++k, h = input.next_halfedge_handle(h))
-      if (input.from_vertex_handle(h) == v) {
-        weights[k] = weight;
-        return;
-      }
-    TRIMQUAD_ASSERT(!"the vertex is a corner of the triangle");
+    if (input.to_vertex_handle(first) == v) return void(weights[1] = weight);
+    if (input.to_vertex_handle(second) == v) return void(weights[2] = weight);
+    TRIMQUAD_ASSERT(input.from_vertex_handle(first) == v);
+    weights[0] = weight;
   };
   if (const auto* v = std::get_if<VertexHandle>(&origin.element)) {
     put(*v, 1);
@@ -182,45 +198,48 @@ VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, FaceH
 
 std::vector<VertexHandle> compact(RefinedMesh& refined) {
   SurfaceMesh& mesh = refined.mesh;
-  std::vector<VertexHandle> vertex(mesh.n_vertices());
-  std::vector<FaceHandle> face(mesh.n_faces());
-  std::vector<VertexHandle*> keptVertices;
-  std::vector<HalfedgeHandle*> noHalfedges;
-  std::vector<FaceHandle*> keptFaces;
-  for (const auto v : mesh.all_vertices())
-    if (!mesh.status(v).deleted()) vertex[v.idx()] = v, keptVertices.push_back(&vertex[v.idx()]);
-  for (const auto f : mesh.all_faces())
-    if (!mesh.status(f).deleted()) face[f.idx()] = f, keptFaces.push_back(&face[f.idx()]);
-  mesh.garbage_collection(keptVertices, noHalfedges, keptFaces);
+  // Properties move along with their elements.
+  OpenMesh::VPropHandleT<int> vertexBefore;
+  OpenMesh::FPropHandleT<int> faceBefore;
+  mesh.add_property(vertexBefore);
+  mesh.add_property(faceBefore);
+  for (int v = 0; v < int(mesh.n_vertices()); ++v) mesh.property(vertexBefore, VertexHandle(v)) = v;
+  for (int f = 0; f < int(mesh.n_faces()); ++f) mesh.property(faceBefore, FaceHandle(f)) = f;
+  std::vector<VertexHandle> renamed(mesh.n_vertices());
+  mesh.garbage_collection();
   std::vector<Origin> vertexOrigin(mesh.n_vertices());
   std::vector<int> faceOrigin(mesh.n_faces());
-  for (std::size_t v = 0; v < vertex.size(); ++v)
-    if (vertex[v].is_valid()) vertexOrigin[vertex[v].idx()] = refined.vertexOrigin[v];
-  for (std::size_t f = 0; f < face.size(); ++f)
-    if (face[f].is_valid()) faceOrigin[face[f].idx()] = refined.faceOrigin[f];
+  for (int v = 0; v < int(mesh.n_vertices()); ++v) {
+    const int before = mesh.property(vertexBefore, VertexHandle(v));
+    renamed[before] = VertexHandle(v);
+    vertexOrigin[v] = refined.vertexOrigin[before];
+  }
+  for (int f = 0; f < int(mesh.n_faces()); ++f)
+    faceOrigin[f] = refined.faceOrigin[mesh.property(faceBefore, FaceHandle(f))];
+  mesh.remove_property(vertexBefore);
+  mesh.remove_property(faceBefore);
   refined.vertexOrigin = std::move(vertexOrigin);
   refined.faceOrigin = std::move(faceOrigin);
-  return vertex;
+  return renamed;
 }
 
 void relax(const SurfaceMesh& input, RefinedMesh& refined) {
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (std::size_t i = input.n_vertices(); i < refined.mesh.n_vertices(); ++i) {
-      const VertexHandle v{int(i)};
-      const Origin before = refined.vertexOrigin[i];
-      const double least = smallestTriangle(input, refined, v, before);
-      if (least > kGood) continue;
-      const Origin goal = amongNeighbours(input, refined, v);
-      for (const double step : {1.0, 0.5, 0.2}) {
-        Origin place = before;
-        place.weights = (1 - step) * before.weights + step * goal.weights;
-        const double next = smallestTriangle(input, refined, v, place);
-        if (next <= 0 || next <= kBetter * least) continue;
-        refined.vertexOrigin[i] = place;
-        refined.mesh.set_point(v, placeInSpace(input, place));
-        break;
-      }
+  std::vector<VertexHandle> now, next;
+  for (std::size_t i = input.n_vertices(); i < refined.mesh.n_vertices(); ++i)
+    now.push_back(VertexHandle(int(i)));
+  for (int sweep = 0; sweep < kSweeps && !now.empty(); ++sweep) {
+    next.clear();
+    for (const VertexHandle v : now) {
+      if (!moveApart(input, refined, v)) continue;
+      // Nothing has changed for those that neither moved nor have a neighbour that did.
+      next.push_back(v);
+      for (const auto w : refined.mesh.vv_range(v))
+        if (std::size_t(w.idx()) >= input.n_vertices()) next.push_back(w);
     }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    now.swap(next);
+  }
 }
 
 Eigen::Vector2d imageInChart(const Parametrization& map, const RefinedMesh& refined, HalfedgeHandle h) {

@@ -4,6 +4,7 @@
 #include "trimquad/quantize/branch_and_bound.h"
 #include "trimquad/quantize/deviation_flow.h"
 #include "trimquad/quantize/greedy.h"
+#include "trimquad/quantize/short_loops.h"
 
 namespace trimquad {
 namespace {
@@ -36,7 +37,8 @@ Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, co
   if (!optimum.proven) improved(optimum.length);
   if (optimum.proven) result.length = std::move(optimum.length);
   result.lowerBound = optimum.lowerBound;
-  if (options.optimal) result.method = optimum.proven ? "optimal" : "bounded";
+  if (options.widen) result.widened = widenLoops(dual, objective, separation, result.length, progress);
+  if (options.optimal) result.method = optimum.proven && result.widened == 0 ? "optimal" : "bounded";
   TRIMQUAD_ASSERT(isConsistent(dual, result.length));
   TRIMQUAD_ASSERT(!separation.fault(result.length));
   result.objective = objective(result.length);

@@ -11,6 +11,7 @@ namespace trimquad {
 struct QuantizationOptions {
   Separation separation = Separation::Free;
   bool optimal = false;        ///< search on until the objective is proven to be least
+  bool widen = true;           ///< three quads at least around handles and necks: see `widenLoops`
   double virtualWeight = 0.1;  ///< of virtual arcs in the objective, relative to real ones
 };
 
@@ -23,13 +24,15 @@ struct Quantization {
   double objective = 0;   ///< see `Objective`
   double lowerBound = 0;  ///< no separating lengths have a smaller objective
   int steps = 0;          ///< changes that improved the objective
+  int widened = 0;        ///< and those that made room around handles and necks afterwards
   int zeroArcs = 0, zeroPatches = 0;
 };
 
 /// Lengths near the arcs' target lengths: strictly positive ones, improved by elementary circuits as long as
 /// they stay separating; the least-cost flow, with its collapses repaired and improved in the same way; then,
 /// from the better of the two, a search that branches from the flow, short in general and long with
-/// `optimal`. Throws Error(Stage, "quantize") where the T-mesh admits no positive lengths.
+/// `optimal`. Afterwards `widenLoops`, unless it is switched off. Throws Error(Stage, "quantize") where the
+/// T-mesh admits no positive lengths.
 Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, const Progress& progress);
 
 }  // namespace trimquad

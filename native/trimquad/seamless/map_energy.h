@@ -17,6 +17,9 @@ struct MapDensity {
 
 /// |J|^2 + |J^-1|^2, infinite where D <= 0.
 MapDensity symmetricDirichlet(double I, double D);
+/// The same and a multiple of |J|^2 / det J, which is least where angles are kept: what maps are optimised
+/// for. Quads become straighter for a little of the evenness of their edges.
+MapDensity straightDirichlet(double I, double D);
 /// (|J|^2 + 1 + D^2) / chi(D), chi a smooth positive stand-in for D that tends to max(D, 0) with epsilon:
 /// finite everywhere, so that it leads from maps with flipped triangles to maps without. (Garanzha et al.
 /// 2021)

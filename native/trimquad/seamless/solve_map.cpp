@@ -232,7 +232,7 @@ void optimize(const MapProblem& problem, Eigen::VectorXd& z, MapCounters& counte
   SparseSolver solver(problem.stage);
   const int most = counters.convexStart ? 200 : 50;
   for (int i = 0; i < most; ++i) {
-    const double decrease = newtonStep(energy, symmetricDirichlet, problem.follow, true, solver, z);
+    const double decrease = newtonStep(energy, straightDirichlet, problem.follow, true, solver, z);
     ++counters.iterations;
     progress.report(0.5 + 0.5 * i / most);
     if (decrease < kConverged) break;

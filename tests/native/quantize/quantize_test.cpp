@@ -8,6 +8,7 @@
 #include "tmesh/tmesh_checks.h"
 #include "trimquad/quantize/circuits.h"
 #include "trimquad/quantize/greedy.h"
+#include "trimquad/quantize/short_loops.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;
@@ -164,6 +165,43 @@ TEST(Quantize, aTorusFarSmallerThanAQuadKeepsBothItsHandles) {
   const GridMap torus = gridMapOf(wrapped(12, 8, 0.001, 0.001, true), 30);
   const Quantization q = quantize(partition(torus, progress), {}, progress);
   EXPECT_EQ(q.zeroArcs, 0);
+}
+
+TEST(Quantize, noTwoEdgesOfTheGridJoinTheSamePoints) {
+  const Progress progress;
+  int narrow = 0;
+  for (unsigned seed = 0; seed < sample::rounds(400) && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const GridMap map = randomMap(seed, true);
+    const auto quads = coneQuarters(map);
+    bool singleQuad = false;
+    for (const auto v : map.mesh.vertices())
+      singleQuad = singleQuad || (!map.mesh.is_boundary(v) && quads[v.idx()] == 1);
+    if (singleQuad) continue;
+    const TMesh tmesh = partition(map, progress);
+    QuantizationOptions as;
+    as.widen = false;
+    const ArcLengths before = quantize(tmesh, as, progress).length;
+    const Quantization after = quantize(tmesh, {}, progress);
+    EXPECT_FALSE(hasShortLoops(tmesh, after.length));
+    EXPECT_EQ(after.widened > 0, hasShortLoops(tmesh, before));
+    for (std::size_t a = 0; a < before.size(); ++a) EXPECT_GE(after.length[a], before[a]);
+    EXPECT_TRUE(isSoundQuotient(map, tmesh, after.length));
+    narrow += after.widened > 0;
+  }
+  EXPECT_GT(narrow, 0);
+}
+
+TEST(Quantize, aTorusHasThreeQuadsAroundAtLeast) {
+  const Progress progress;
+  const GridMap torus = gridMapOf(wrapped(12, 8, 0.001, 0.5, true), 30);
+  const TMesh tmesh = partition(torus, progress);
+  const Quantization q = quantize(tmesh, {}, progress);
+  EXPECT_FALSE(hasShortLoops(tmesh, q.length));
+  long quads = 0;
+  for (const auto& patch : tmesh.patches)
+    quads += long(lengthOf(patch.sides[0], q.length)) * lengthOf(patch.sides[1], q.length);
+  EXPECT_EQ(quads, 3 * 4);  // half a quad wide, 8 columns of them
 }
 
 TEST(Quantize, aThinColumnMayLoseItsHeightBetweenNotches) {

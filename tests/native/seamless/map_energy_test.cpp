@@ -76,6 +76,35 @@ TEST(HessianPattern, hasEveryDiagonalAndSortedColumns) {
   }
 }
 
+TEST(MapDensity, derivativesAreThoseOfTheValue) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> size(0.3, 3);
+  constexpr double kStep = 1e-6;
+  for (const auto density : {symmetricDirichlet, straightDirichlet})
+    for (int round = 0; round < 50; ++round) {
+      const double D = size(random), I = 2 * D + size(random);
+      const MapDensity d = density(I, D);
+      const auto slope = [&](auto part, double stepI, double stepD) {
+        return (part(density(I + stepI, D + stepD)) - part(density(I - stepI, D - stepD))) / (2 * kStep);
+      };
+      const auto value = [](const MapDensity& m) { return m.value; };
+      const auto dD = [](const MapDensity& m) { return m.dD; };
+      EXPECT_NEAR(d.dI, slope(value, kStep, 0), 1e-5 * (1 + std::abs(d.dI)));
+      EXPECT_NEAR(d.dD, slope(value, 0, kStep), 1e-5 * (1 + std::abs(d.dD)));
+      EXPECT_NEAR(d.dId, slope(dD, kStep, 0), 1e-5 * (1 + std::abs(d.dId)));
+      EXPECT_NEAR(d.dDd, slope(dD, 0, kStep), 1e-5 * (1 + std::abs(d.dDd)));
+    }
+}
+
+TEST(MapDensity, isLeastForIsometriesAndRisesLessForEvenScalingThanForShear) {
+  const MapDensity isometry = straightDirichlet(2, 1);
+  // Of the same symmetric Dirichlet energy: scaled evenly by s, and stretched by t and 1 / t.
+  const double s = 1.3, energy = 2 * s * s + 2 / (s * s), x = energy / 4, t2 = x + std::sqrt(x * x - 1);
+  EXPECT_NEAR(symmetricDirichlet(t2 + 1 / t2, 1).value, energy, 1e-12);
+  EXPECT_GT(straightDirichlet(2 * s * s, s * s).value, isometry.value);
+  EXPECT_GT(straightDirichlet(t2 + 1 / t2, 1).value, straightDirichlet(2 * s * s, s * s).value);
+}
+
 /// A twisted sheet of n x n cells, whose targets are all one triangle.
 struct Sheet {
   SurfaceMesh mesh;
