@@ -34,8 +34,9 @@ constexpr double kEmphasis = 10;
 /// The same of samples next to where the surface is turned over, which keep the map's parameters: these fold
 /// nowhere.
 constexpr double kFoldEmphasis = 20;
-/// Factor of the fairness around places that stay turned over, each round, and the largest.
-constexpr double kFoldStiffens = 4, kStiffestFold = 1e6;
+/// Factor of the fairness around places that stay turned over, each round, and the largest; and how far around,
+/// quads: on wider knot intervals, knots are missing instead.
+constexpr double kFoldStiffens = 4, kStiffestFold = 1e6, kWidestSpot = 1;
 /// Only where the deviation is above this part of the largest one are knots inserted: it reaches a few spans
 /// beyond its cause, where it goes away by itself. Along a crease it does not, and all that fail are refined.
 constexpr double kWorstPart = 0.3;
@@ -392,7 +393,7 @@ bool FitRounds::correctionPays() const {
 void FitRounds::refine() {
   if (failing_.empty()) {
     // Within tolerance, but turned over somewhere.
-    if (insertKnots()) return;
+    if (insertKnots() || kept_) return;
     if (++stiffened_ > 3)
       throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
                        region_.name, turnedPoint_);
@@ -409,14 +410,15 @@ void FitRounds::refine() {
 /// More fairness where the surface is turned over in few places, the more the longer it stays so; and less
 /// again where that keeps it from the tolerance.
 void FitRounds::stiffenFolds() {
-  if (deviation_.max > kClose * tolerance_ ||
-      double(deviation_.turnedOver.size()) > kSmallFolds * double(samples_.size()))
-    return;
-  std::vector<char> folds(fairness_.spots.size(), 0);
   const auto holds = [](const Fairness::Spot& spot, const FitPlace& x) {
     return spot.chart == x.chart && (spot.at - x.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
   };
-  for (const int i : deviation_.turnedOver) folds_.push_back(feet_[i]);
+  std::vector<char> fails(fairness_.spots.size(), 0), folds(fairness_.spots.size(), 0);
+  for (std::size_t k = 0; k < fails.size(); ++k)
+    for (const auto& x : failing_) fails[k] |= holds(fairness_.spots[k], x);
+  if (deviation_.max <= kClose * tolerance_ &&
+      double(deviation_.turnedOver.size()) <= kSmallFolds * double(samples_.size()))
+    for (const int i : deviation_.turnedOver) folds_.push_back(feet_[i]);
   for (const auto& x : folds_) {
     bool isNew = true;
     for (std::size_t k = 0; k < fairness_.spots.size(); ++k) {
@@ -424,18 +426,16 @@ void FitRounds::stiffenFolds() {
       isNew = false;
       if (k < folds.size()) folds[k] = 1;
     }
-    if (!isNew) continue;
     const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
-    fairness_.spots.push_back({x.chart, x.parameter,
-                               std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1]))),
-                               1});
+    const double reach = std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
+    if (isNew && reach <= kWidestSpot) fairness_.spots.push_back({x.chart, x.parameter, reach, 1});
   }
   for (std::size_t k = 0; k < folds.size(); ++k) {
     auto& spot = fairness_.spots[k];
-    if (folds[k])
-      spot.factor = std::min(kFoldStiffens * spot.factor, kStiffestFold);
-    else if (std::any_of(failing_.begin(), failing_.end(), [&](const FitPlace& x) { return holds(spot, x); }))
+    if (fails[k])
       spot.factor /= kFoldStiffens;
+    else if (folds[k])
+      spot.factor = std::min(kFoldStiffens * spot.factor, kStiffestFold);
   }
   folds_.clear();
 }
