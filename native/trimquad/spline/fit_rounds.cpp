@@ -34,9 +34,9 @@ constexpr double kEmphasis = 10;
 /// The same of samples next to where the surface is turned over, which keep the map's parameters: these fold
 /// nowhere.
 constexpr double kFoldEmphasis = 20;
-/// Factor of the fairness around places that stay turned over, each round, and the largest; and how far around,
-/// quads: on wider knot intervals, knots are missing instead.
-constexpr double kFoldStiffens = 4, kStiffestFold = 1e6, kWidestSpot = 1;
+/// Factor of the fairness around places that stay turned over, each round, and the largest; and how far
+/// around, quads: on wider knot intervals, knots are missing instead.
+constexpr double kFoldStiffens = 4, kStiffestFold = 1e5, kWidestSpot = 1;
 /// Only where the deviation is above this part of the largest one are knots inserted: it reaches a few spans
 /// beyond its cause, where it goes away by itself. Along a crease it does not, and all that fail are refined.
 constexpr double kWorstPart = 0.3;
@@ -95,7 +95,7 @@ FittedSurface FitRounds::rounds() {
     if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0))
       return std::move(result_);
     keepIfEnough();
-    if (kept_ && !kept_->folded.empty() && ++foldRounds_ > kFoldPatience) throw unreachable();
+    if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
     stiffenFolds();
     if (correctionPays()) {
       correct();
@@ -365,7 +365,8 @@ bool FitRounds::verified(double tolerance, double folds) {
     result_.folded.push_back(control[i].point);
     folds_.push_back(feet[i]);
   }
-  result_.samples = int(control.size());
+  for (const int i : deviation_.turnedOver) result_.folded.push_back(samples_[i].point);
+  result_.samples = int(control.size() + samples_.size());
   if (found.max <= tolerance && double(found.turnedOver.size()) <= folds * double(control.size()))
     return true;
   failing_ = places(control, threshold(found.max));
@@ -393,7 +394,7 @@ bool FitRounds::correctionPays() const {
 void FitRounds::refine() {
   if (failing_.empty()) {
     // Within tolerance, but turned over somewhere.
-    if (insertKnots() || kept_) return;
+    if (insertKnots() || smoothsFolds()) return;
     if (++stiffened_ > 3)
       throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
                        region_.name, turnedPoint_);
@@ -419,6 +420,7 @@ void FitRounds::stiffenFolds() {
   if (deviation_.max <= kClose * tolerance_ &&
       double(deviation_.turnedOver.size()) <= kSmallFolds * double(samples_.size()))
     for (const int i : deviation_.turnedOver) folds_.push_back(feet_[i]);
+  bool covered = !folds_.empty();
   for (const auto& x : folds_) {
     bool isNew = true;
     for (std::size_t k = 0; k < fairness_.spots.size(); ++k) {
@@ -429,7 +431,9 @@ void FitRounds::stiffenFolds() {
     const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
     const double reach = std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
     if (isNew && reach <= kWidestSpot) fairness_.spots.push_back({x.chart, x.parameter, reach, 1});
+    covered = covered && (!isNew || reach <= kWidestSpot);
   }
+  foldsAreSpots_ = covered;
   for (std::size_t k = 0; k < folds.size(); ++k) {
     auto& spot = fairness_.spots[k];
     if (fails[k])

@@ -112,6 +112,8 @@ class FitRounds {
   void refine();
   void stiffen(double factor);
   void stiffenFolds();
+  /// Whether only folds are to go yet, and there is fairness where they are.
+  bool smoothsFolds() const { return kept_ && !kept_->folded.empty() && foldsAreSpots_; }
   State state() const;
   void restore(State state);
   int poles() const;
@@ -126,6 +128,7 @@ class FitRounds {
   std::vector<double> emphasis_;        ///< by sample: factor of its weight
   State beforeCorrection_;
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
+  bool foldsAreSpots_ = false;  ///< all folds seen last
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0;

@@ -36,8 +36,8 @@ struct FittedSurface {
   std::vector<SplineSurface> surfaces;        ///< by chart of the layout
   double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
   std::vector<ChartDeviation> deviations;     ///< by chart, one where there is a single surface
-  /// Independent samples where a surface is turned over in a small fold, though it lies within the tolerance
-  /// there; and how many samples there are.
+  /// Samples, those of the fit and independent ones, where a surface is turned over in a small fold, though
+  /// it lies within the tolerance there; and how many samples there are.
   std::vector<Eigen::Vector3d> folded;
   int samples = 0;
   int rounds = 0;

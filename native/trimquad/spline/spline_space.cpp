@@ -165,12 +165,12 @@ bool Fairness::isStiff(const SplineLine& u, int i, const SplineLine& v, int j) c
 double Fairness::weight(const SplineLine& u, int i, const SplineLine& v, int j, bool hasData) const {
   // Below one quad the energy counts by the knot rectangle: it must not hold back knots that follow a crease.
   const double size = isStiff(u, i, v, j) ? 1 : std::clamp(u.width(i) * v.width(j), 1e-3, 1.0);
-  double factor = size * size;
+  double result = size * size * (hasData ? withData : withoutData);
   const Eigen::Vector2d low(u.breaks[i], v.breaks[j]), high(u.breaks[i + 1], v.breaks[j + 1]);
   for (const auto& spot : spots)
     if ((spot.at - spot.at.cwiseMax(low).cwiseMin(high)).lpNorm<Eigen::Infinity>() < spot.reach)
-      factor = std::max(factor, spot.factor);
-  return factor * (hasData ? withData : withoutData);
+      result = std::max(result, spot.factor * withData);
+  return result;
 }
 
 /// Calls emit(span in u, span in v, normal matrix, right-hand side) for every knot rectangle; local unknown

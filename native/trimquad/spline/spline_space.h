@@ -45,8 +45,7 @@ struct Fairness {
   /// Knot rectangles within `stiffReach` of these count as larger ones do.
   std::vector<Eigen::Vector2d> stiffAt = {};
   double stiffReach = 0;  ///< quads
-  /// A knot rectangle that such a square touches counts as one of 1 quad^2 does, times its factor, the
-  /// largest of several.
+  /// On a knot rectangle that such a square touches the weight is at least its factor times `withData`.
   struct Spot {
     int chart;
     Eigen::Vector2d at;

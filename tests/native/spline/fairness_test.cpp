@@ -25,7 +25,7 @@ double leastUp(const SplineSurface& s, double side) {
   return least;
 }
 
-TEST(Fairness, countsOnNarrowRectanglesByTheirAreaButInSpots) {
+TEST(Fairness, countsOnNarrowRectanglesByTheirAreaAndByItsFactorInSpots) {
   const SplineSpace space = square(8, 0.125);
   Fairness fairness{2, 3};
   const double narrow = std::pow(0.125 * 0.125, 2);
@@ -34,6 +34,7 @@ TEST(Fairness, countsOnNarrowRectanglesByTheirAreaButInSpots) {
   fairness.spots = {{0, {0.2, 0.8}, 0.1, 5}, {0, {0.2, 0.8}, 0.01, 7}};
   EXPECT_DOUBLE_EQ(fairness.weight(space.u, 1, space.v, 6, true), 2 * 7);
   EXPECT_DOUBLE_EQ(fairness.weight(space.u, 2, space.v, 6, true), 2 * 5) << "within reach of one only";
+  EXPECT_DOUBLE_EQ(fairness.weight(space.u, 2, space.v, 6, false), 2 * 5);
   EXPECT_DOUBLE_EQ(fairness.weight(space.u, 4, space.v, 6, true), 2 * narrow);
 }
 
