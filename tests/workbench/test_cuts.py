@@ -1,13 +1,11 @@
 """Regions of CAD models that fail as a whole are cut along smooth edges inside them."""
-import importlib
 import json
 import math
 
 import pytest
 import trimquad
+from trimquad import joining, regions
 from trimquad.error import Error
-
-conversion = importlib.import_module("trimquad.convert")  # its function hides it
 
 
 def tube():
@@ -26,14 +24,14 @@ ROUNDING = (1 - math.sqrt(0.5), 1 - math.sqrt(0.5), 1.5)
 @pytest.fixture
 def large_regions_fail(monkeypatch):
     """Fits fail where a region is half of the tube or more, in one of its roundings."""
-    fit, area = conversion._fit, sum(f.Area for f in tube())
+    fit, area = regions.fit, sum(f.Area for f in tube())
 
     def refusing(item, *arguments, **ways):
         if item.region.area > area / 2:
             raise Error("stage", "fit", "refused", item.name, ROUNDING)
         return fit(item, *arguments, **ways)
 
-    monkeypatch.setattr(conversion, "_fit", refusing)
+    monkeypatch.setattr(regions, "fit", refusing)
 
 
 def converted(**options):
@@ -82,7 +80,7 @@ def test_a_failure_that_no_cut_cures_stays_one(monkeypatch):
     def refusing(item, *_, **__):
         raise Error("stage", "fit", "refused", item.name)
 
-    monkeypatch.setattr(conversion, "_fit", refusing)
+    monkeypatch.setattr(regions, "fit", refusing)
     result = converted()
     assert len(result.cuts) == 1 and len(result.failed) == len(result.regions) == 8
     assert result.shape is None
@@ -92,7 +90,7 @@ def test_a_region_that_cannot_be_trimmed_is_cut(monkeypatch):
     def refusing(item, charts, error, result, progress):
         item.fitted, item.error = None, Error("stage", "fit", "refused", item.name)
 
-    native, whole = conversion.load(), []
+    native, whole = joining.load(), []
 
     def trim_model(model, *arguments):
         if len(model.regions) == 1:
@@ -104,8 +102,8 @@ def test_a_region_that_cannot_be_trimmed_is_cut(monkeypatch):
         def __getattr__(self, name):
             return trim_model if name == "trim_model" else getattr(native, name)
 
-    monkeypatch.setattr(conversion, "_refit", refusing)
-    monkeypatch.setattr(conversion, "load", Native)
+    monkeypatch.setattr(joining, "_refit", refusing)
+    monkeypatch.setattr(joining, "load", Native)
     result = converted()
     assert len(whole) == 1 and len(result.cuts) == 1 and not result.failed
     assert result.shape.isValid() and len(result.shape.Faces) == 8

@@ -294,7 +294,7 @@ class _FitsNoHoles:
 
 
 def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay(monkeypatch):
-    module = sys.modules["trimquad.convert"]
+    module = sys.modules["trimquad.regions"]
     native = _FitsNoHoles(module.load(), 3)
     monkeypatch.setattr(module, "load", lambda: native)
     # Round holes of 23 and of 49 around, the second wider than is bridged.
@@ -312,7 +312,7 @@ def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay
 
 
 def test_where_nothing_fits_at_all_the_region_is_left_as_it_was(monkeypatch):
-    module = sys.modules["trimquad.convert"]
+    module = sys.modules["trimquad.regions"]
     native = _FitsNoHoles(module.load(), 0)
     monkeypatch.setattr(module, "load", lambda: native)
     result = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))

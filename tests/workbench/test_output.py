@@ -187,7 +187,7 @@ class _AlwaysAtFault:
 def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeypatch):
     import sys
 
-    module = sys.modules["trimquad.convert"]
+    module = sys.modules["trimquad.joining"]
     native = _AlwaysAtFault(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
     result = trimquad.convert(sheet, trimquad.Options(quads=50))
@@ -243,7 +243,7 @@ def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monke
     points = np.array([(x, y, 0.7 * abs(x - 8)) for y in steps for x in steps])
     corner = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
     triangles = np.vstack([np.c_[corner, corner + 1, corner + n + 2], np.c_[corner, corner + n + 2, corner + n + 1]])
-    module = sys.modules["trimquad.convert"]
+    module = sys.modules["trimquad.regions"]
     native = _NoCreases(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
     result = trimquad.convert((points, triangles), trimquad.Options(quads=100, relative_tolerance=5e-3))

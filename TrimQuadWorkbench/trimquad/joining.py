@@ -1,0 +1,144 @@
+"""Fitted surfaces trimmed and joined to one model; what is at fault is fitted again, then cut."""
+import time
+
+from . import regions
+from .cuts import cut_failed
+from .error import Error, cancelled
+from .native import load
+
+# A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
+# again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), cut in
+# two where it bends most, to this part of the tolerance.
+REFITS = (
+    {"smallest_rectangle": True},
+    {"cut": True},
+    {"cut": True},
+    {"part": 0.4},
+    {"part": 0.16},
+)
+# The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
+# have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first.
+CLOSER = 0.1
+
+
+def trim(result, progress):
+    """Trims and joins the fitted surfaces. A region that cannot be trimmed is fitted again, then cut; where that does not
+    help it is left out and the others tried again."""
+    native = load()
+    started = time.monotonic()
+    elsewhere = 0.0
+    while any(r.fitted is not None for r in result.regions):
+        try:
+            with progress.stage("trim") as native_progress:
+                result.spline = native.trim_model(
+                    result.model,
+                    [r.fitted_from.grid if r.fitted is not None else None for r in result.regions],
+                    [r.fitted for r in result.regions],
+                    result.fit_tolerance,
+                    native_progress,
+                )
+                result.native_shape = native.assemble(result.spline)
+            if not _refit_faulty(result, progress):
+                break
+            result.spline = None  # its faces are at fault
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+            result.spline = None
+            # `where` is the region's name, or the name and an edge of it.
+            name = error.where.split(",")[0]
+            guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
+            for item in guilty:
+                if not _fit_parts_closer(item, result, progress):
+                    _refit(item, set(), error, result, progress)
+            if not guilty:
+                for item in result.regions:
+                    if item.fitted is not None:
+                        item.fitted = None
+                        item.error = error
+                        item.cuts_left = 0  # none of them is to blame
+        paused = time.monotonic()
+        regions.map_regions(cut_failed(result, progress), result, progress)
+        elsewhere += time.monotonic() - paused
+    if result.spline is None:
+        result.native_shape = None
+    result.seconds["trim"] = time.monotonic() - started - elsewhere
+    if progress.cancelled:
+        raise cancelled()
+
+
+def _refit_faulty(result, progress):
+    """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any."""
+    faulty = {}  # index of the region: charts and a fault
+    for face, faults in zip(result.spline.faces, load().face_faults(result.spline)):
+        if faults:
+            faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
+    if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
+        return True
+    for index, found in faulty.items():
+        item = result.regions[index]
+        advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
+        _refit(item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name), result, progress)
+    return bool(faulty)
+
+
+def _refit(item, charts, error, result, progress):
+    """Fits a region again in the next of the ways there are. Where there is none left, its error is kept instead.
+
+    charts: those whose faces are at fault; empty where the region's edges are
+    """
+    try:
+        item.refits += 1
+        while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):
+            item.refits += 1
+        if item.refits > len(REFITS):
+            raise error
+        way = dict(REFITS[item.refits - 1])
+        if way.pop("cut", False):
+            item.bisections = [*item.bisections, sorted(charts)]
+        with progress.stage("fit", item.name) as native_progress:
+            item.fitted = regions.fit(item, result, native_progress, **way)
+    except Error as failure:
+        if failure.kind == "cancelled":
+            raise
+        item.fitted = None
+        item.error = failure
+
+
+def _applies(way, item, charts):
+    if "smallest_rectangle" in way:
+        return bool(charts) and not item.fitted.several
+    return bool(charts) or "cut" not in way
+
+
+def _fit_parts_closer(item, result, progress):
+    """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
+    closer = False
+    for index in load().touching_regions(result.model, result.regions.index(item)):
+        part = result.regions[index]
+        if part.cut_from is None or part.fitted is None or part.fitted_closer:
+            continue
+        part.fitted_closer = True
+        try:
+            with progress.stage("fit", part.name) as native_progress:
+                part.fitted = regions.fit(part, result, native_progress, part=CLOSER, only=False)
+            closer = True
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+    return closer
+
+
+def check(result, progress):
+    """OpenCASCADE's check of the whole model, but for faces that cross others: that can take longer than all the rest."""
+    if result.native_shape is None:
+        return
+    started = time.monotonic()
+    with progress.stage("check"):
+        result.faults = load().shape_faults(result.native_shape, False)
+    result.seconds["trim"] += time.monotonic() - started
+    if result.faults:
+        shown = "; ".join(result.faults[:3]) + ("; ..." if len(result.faults) > 3 else "")
+        result.warnings.append(
+            f"OpenCASCADE finds faults in the B-spline model ({len(result.faults)}: {shown}); use a smaller tolerance"
+        )

@@ -1,0 +1,287 @@
+"""The regions of a conversion: what becomes of each, and the stages from triangles to fitted surfaces."""
+import time
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple, Tuple
+
+import numpy
+
+from .cuts import MOST_CUTS, cut_failed
+from .error import Error, system_error
+from .native import load
+from .polygons import Polygons
+
+# A fit that cannot come that close is taken at this part of the tolerance.
+ENOUGH = 0.95
+# Times that the edges of a region's quads are halved where it is too narrow for them.
+HALVINGS = 3
+# Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
+SMALL_HOLE = 8
+
+
+class RegionResult:
+    """What became of one region. Stages that were not reached are None; `error` says why.
+
+    name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
+    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds;
+    cut_from: name of the region that it is a part of, None for a whole; cuts_left: how often it may be cut if it fails;
+    holes: what became of boundary loops shorter than `fill_holes`; bridged: the region with its holes bridged, which
+    field, seamless and tmesh are of (the region itself where no hole is).
+    """
+
+    def __init__(self, region):
+        self.name = region.name
+        self.region = self.mapped_region = self.bridged = region
+        self.holes = None
+        self.guidance = self.field = self.seamless = self.tmesh = self.quantization = None
+        self.embedding = self.grid = self.quads = self.fitted = self.error = None
+        self.edge_length = None  # of its quads
+        self.fill_holes = 0.0  # holes shorter than this are bridged
+        self.refits = self.field_edits = 0
+        self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
+        self.bisections = []  # by round: charts cut in two because their faces were at fault
+        self.seconds = {}
+        self.cut_from = None
+        self.fitted_closer = False
+        self.cuts_left = MOST_CUTS
+
+    @property
+    def has_creases(self):
+        """Whether the B-spline surfaces follow the sharp edges inside the region that its quads follow."""
+        aligned = (r.region.features["aligned_edges"] for r in (self.fitted_from, self))
+        return next(aligned) == next(aligned)
+
+    @property
+    def holes_bridged_to_fit(self):
+        """How many holes the map of the B-spline surfaces goes on behind, though that of the quads does not."""
+        return 0 if self.fitted_from is self or not self.fitted_from.holes else self.fitted_from.holes["bridged"]
+
+    @property
+    def polygons(self):
+        """The quads as Polygons, or None."""
+        return None if self.quads is None else Polygons.from_obj(self.quads.to_obj())
+
+    @property
+    def directions(self):
+        """The cross field, or None: by triangle of the region one of its four unit directions, array (m, 3)."""
+        return None if self.field is None else self.field.directions[: self.region.triangles]
+
+    @property
+    def singularities(self):
+        """Singular vertices of the cross field: a list of Singularity, empty before the field is there. Those in holes
+        that were bridged are not on the surface and not in the list."""
+        if self.field is None:
+            return []
+        points, bridges = self.region.points, self._vertices_of_bridges()
+        singular = [(v, index) for v, index in self.field.singular_vertices if v not in bridges]
+        return [Singularity(v, index, tuple(points[v])) for v, index in singular]
+
+    @property
+    def bridged_singularities(self):
+        """How many singular vertices of the cross field lie in holes that were bridged."""
+        return 0 if self.field is None else len(self.field.singular_vertices) - len(self.singularities)
+
+    def _vertices_of_bridges(self):
+        if not self.bridged.bridge:
+            return set()
+        return set(self.bridged.corners[numpy.array(self.bridged.bridge, dtype=bool)].ravel().tolist())
+
+    @property
+    def seamless_map(self):
+        """The seamless map of the region, without what bridges its holes; or None."""
+        if self.seamless is None or not self.bridged.bridge:
+            return self.seamless
+        return load().without_bridges(self.seamless, self.bridged)
+
+    @property
+    def map(self):
+        """The finest map that was reached (the grid map, else the seamless one) as a SurfaceMap, or None."""
+        found = self.grid or self.seamless_map
+        return None if found is None else SurfaceMap(*found.arrays)
+
+
+class Singularity(NamedTuple):
+    """A vertex where a cross field has no direction."""
+
+    vertex: int  # of the region
+    index: int  # in quarter turns: 1 where three quads meet, -1 where five do
+    position: Tuple[float, float, float]
+
+
+class SurfaceMap(NamedTuple):
+    """A map of triangles into the plane."""
+
+    points: object  # vertices, array (n, 3); the first are the region's own
+    triangles: object  # vertex numbers, array (m, 3)
+    uv: object  # by triangle and corner, in quads, array (m, 3, 2)
+
+
+def map_regions(waiting, result, progress):
+    """The stages of regions (number, RegionResult), then of the parts of those that failed."""
+    while waiting:
+        progress.region_count = len(result.regions)
+        with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
+            for done in [pool.submit(_map_region, r, k, result, progress) for k, r in waiting]:
+                done.result()
+        waiting = cut_failed(result, progress)
+
+
+def _map_region(item, index, result, progress):
+    """The stages of one region, with shorter edges where it is too narrow for quads as large as they are wanted. The
+    first Error that these do not cure ends it and is kept in the region."""
+    item.edge_length, item.fill_holes = result.options.edge_length, result.options.fill_holes
+    for halving in range(HALVINGS + 1):
+        try:
+            return _try_region(item, index, result, progress)
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+            refined = item.mapped_region is not item.region
+            if error.coarse and halving < HALVINGS and not (refined and item.guidance is not None):
+                item.edge_length /= 2
+                item.region = item.mapped_region
+                item.grid = item.quads = item.fitted = None
+                continue
+            if not (error.stage == "fit" and _fit_another_way(item, index, result, progress)):
+                item.error = error
+        except MemoryError as error:
+            item.error = system_error("memory", error)
+        return
+
+
+def _fit_another_way(item, index, result, progress):
+    """Surfaces over another map of the region, where none fits over its own: one that goes on behind small holes, and of a
+    mesh one that does not follow its sharp edges. The region's quads stay as they are. Whether they could be fitted."""
+    if item.quads is None:
+        return False
+    native = load()
+    if item.mapped_region is item.region:
+        item.region = item.mapped_region = native.copy_region(item.region)
+    else:
+        item.mapped_region = native.copy_region(item.mapped_region)
+    small = SMALL_HOLE * item.edge_length
+    regions = [(item.region, small)]
+    if result.source.kind == "mesh" and not result.options.align and item.region.features["aligned_edges"]:
+        smooth = native.without_creases(item.region)
+        if smooth.features["aligned_edges"] < item.region.features["aligned_edges"]:
+            regions += [(smooth, item.fill_holes), (smooth, small)]
+    for region, fill_holes in regions:
+        native.place_region(result.model, index, region)
+        other = RegionResult(result.model.regions[index])
+        other.edge_length, other.guidance, other.fill_holes = item.edge_length, item.guidance, fill_holes
+        try:
+            if fill_holes > item.fill_holes and not _has_holes(other, index, result, progress):
+                continue
+            _try_region(other, index, result, progress)
+            item.fitted, item.fitted_from = other.fitted, other
+            return True
+        except Error as error:
+            if error.kind == "cancelled":
+                raise
+        finally:
+            for stage, seconds in other.seconds.items():
+                item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
+    native.place_region(result.model, index, item.mapped_region)
+    return False
+
+
+def _has_holes(item, index, result, progress):
+    """Whether bridging would close a hole of a region."""
+    with progress.stage("bridge", item.name) as native_progress:
+        return load().bridge_holes(result.model, index, item.fill_holes, native_progress)[1]["bridged"] > 0
+
+
+def _try_region(item, index, result, progress):
+    """The stages of one region in their order, as far as what is to be written needs them."""
+    native = load()
+    options = result.options
+
+    def run(stage, function, *arguments):
+        with progress.stage(stage, item.name) as native_progress:
+            started = time.monotonic()
+            try:
+                return function(*arguments, native_progress)
+            finally:
+                item.seconds[stage] = time.monotonic() - started
+
+    item.bridged = item.region
+    if item.fill_holes > 0:
+        item.bridged, item.holes = run("bridge", native.bridge_holes, result.model, index, item.fill_holes)
+    seed = run("seamless", native.seed, item.bridged, str(options.field), item.guidance, options.field_weight,
+               item.edge_length)
+    item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
+    if seed.refined:
+        # The model's region gets halved edges; the field and all maps are of these.
+        whole, item.guidance = native.place_refined(result.model, index, item.bridged, seed, item.guidance)
+        region = result.model.regions[index]
+        item.bridged = region if item.bridged is item.region else whole
+        item.region = item.mapped_region = region
+    item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
+    if options.wants("partition"):
+        item.tmesh = run("partition", native.partition, item.seamless)
+    if options.wants("quantize"):
+        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
+    if options.wants("optimize"):
+        _grid_map(item, index, result, run)
+    if options.wants("extract"):
+        item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
+        if options.merge_slivers > 0:
+            native.merge_slivers(item.quads, options.merge_slivers)
+    if options.wants("fit"):
+        item.fitted = run("fit", fit, item, result)
+
+
+def _grid_map(item, index, result, run):
+    """By the direct route, the constructive one, or the first and where it fails the other."""
+    native = load()
+    route = result.options.route
+    if route != "reembed":
+        try:
+            item.grid = run("optimize", native.grid_map, item.bridged, item.seamless, item.tmesh, item.quantization,
+                            route == "direct")
+            item.embedding = {"route": "direct", "inserted_vertices": 0, "collapses": 0, "splits": 0}
+            return
+        except Error as error:
+            if route == "direct" or error.kind != "stage":
+                raise
+    # The model's region gets the refined mesh; field and seamless map are of the one before.
+    before = native.copy_region(item.region)
+    if item.bridged is item.region:
+        item.bridged = before
+    item.region = before
+    embedded = run("reembed", native.embed, item.seamless, item.tmesh, item.quantization)
+    item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.bridged, item.seamless,
+                                   embedded)
+    item.mapped_region = result.model.regions[index]
+    item.embedding = {"route": "reembedded", **counters}
+
+
+def _polygonal(quads, item, options):
+    """The quads. Raises Error where they were asked for and their polygons are no manifold."""
+    place = quads.doubled_side
+    if place is not None and "quads" in options.write:
+        raise Error(
+            "stage", "extract", "two quads would share more than one side, the surface is less than three quads around "
+            "there; use a shorter edge length", item.name, place, coarse=True,
+        )
+    return quads
+
+
+def fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
+    """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
+    for `only`."""
+    options = result.options
+    native = load()
+    tolerance = part * result.fit_tolerance
+    return native.fit_surface(
+        item.fitted_from.mapped_region,
+        item.fitted_from.grid,
+        native.FitOptions(
+            tolerance=tolerance,
+            enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
+            smallest_rectangle=smallest_rectangle,
+            bisections=item.bisections,
+            degree=options.degree,
+            threads=max(1, options.threads // len(result.regions)),
+        ),
+        progress,
+    )
