@@ -60,6 +60,9 @@ def test_a_region_s_deviations_are_those_of_its_own_faces(converted, example_pat
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_map_s_points_lie_on_the_model_and_their_distances_are_those_from_the_input(converted, example_path, name):
+    import FreeCAD  # noqa: F401
+    import Part
+
     result, _ = converted(name)
     given = shape_of(example_path(name))
     maps = deviation_maps(result, load().Progress())
@@ -70,14 +73,20 @@ def test_the_map_s_points_lie_on_the_model_and_their_distances_are_those_from_th
         assert distances.max() <= result.options.tolerance
         sides = points[triangles] - points[numpy.roll(triangles, 1, axis=1)]
         assert numpy.linalg.norm(sides, axis=2).max() <= result.model.diagonal / 100
+        sides = numpy.sort(numpy.stack([triangles, numpy.roll(triangles, 1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+        ends, uses = numpy.unique(sides, axis=0, return_counts=True)
+        border = set(ends[uses == 1].ravel().tolist())
         for k in generator.choice(len(points), 12, replace=False):
             # Between two points of a trim curve, the map's border is straight.
             assert distance(result.shape, points[k]) <= result.model.diagonal * MAP_CHORD
             assert min(distance(f.Surface.toShape(), points[k]) for f in result.shape.Faces) <= 1e-7
-            # The input may have a nearer point that faces another way.
-            assert distance(given, points[k]) <= distances[k] + 1e-6
+            # The input may have a nearer point that faces another way. Trim curves may leave its edges by a quarter of the
+            # tolerance, along its surface.
+            beyond = result.options.tolerance / 4 if k in border else 0
+            assert distance(given, points[k]) <= distances[k] + beyond + 1e-6
+        # To OpenCASCADE, a point inside a solid is on it.
         middle = int(numpy.argmax(distances))
-        assert distance(given, points[middle]) == pytest.approx(distances[middle], rel=0.05, abs=1e-6)
+        assert distance(Part.makeCompound(given.Faces), points[middle]) == pytest.approx(distances[middle], rel=0.05, abs=1e-6)
 
 
 def test_a_mesh_s_deviation_is_that_from_its_triangles(tmp_path):
