@@ -293,12 +293,16 @@ class _FitsNoHoles:
         return self._native.fit_surface(region, *rest)
 
 
-def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay(monkeypatch):
+def converted_where_holes_do_not_fit(monkeypatch, loops):
     module = sys.modules["trimquad.regions"]
-    native = _FitsNoHoles(module.load(), 3)
+    native = _FitsNoHoles(module.load(), loops)
     monkeypatch.setattr(module, "load", lambda: native)
+    return trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+
+
+def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay(monkeypatch):
     # Round holes of 23 and of 49 around, the second wider than is bridged.
-    result = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+    result = converted_where_holes_do_not_fit(monkeypatch, 3)
     (region,) = result.regions
     assert region.error is None and region.fitted_from is not region
     assert region.holes is None and region.fitted_from.holes["bridged"] == 1
@@ -312,10 +316,7 @@ def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay
 
 
 def test_where_nothing_fits_at_all_the_region_is_left_as_it_was(monkeypatch):
-    module = sys.modules["trimquad.regions"]
-    native = _FitsNoHoles(module.load(), 0)
-    monkeypatch.setattr(module, "load", lambda: native)
-    result = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+    result = converted_where_holes_do_not_fit(monkeypatch, 0)
     (region,) = result.regions
     assert region.error.stage == "fit" and region.fitted is None and region.fitted_from is region
     assert result.shape is None and region.polygons is not None

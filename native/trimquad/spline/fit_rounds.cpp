@@ -219,17 +219,24 @@ void FitRounds::correct() {
   unfold(deviation_.turnedOver);
 }
 
+/// Those of the small triangles between samples that have a corner among these.
+std::vector<std::array<int, 3>> FitRounds::cellsAround(const std::vector<int>& chosen) const {
+  std::vector<char> isChosen(samples_.size(), 0);
+  for (const int i : chosen) isChosen[i] = 1;
+  std::vector<std::array<int, 3>> result;
+  for (const auto& cell : cells_)
+    if (isChosen[cell[0]] || isChosen[cell[1]] || isChosen[cell[2]]) result.push_back(cell);
+  return result;
+}
+
 /// Around samples where the surface is turned over: back to the map's parameters.
 void FitRounds::unfold(const std::vector<int>& turnedOver) {
-  std::vector<char> turned(samples_.size(), 0);
-  for (const int i : turnedOver) turned[i] = 1;
-  for (const auto& cell : cells_)
-    if (turned[cell[0]] || turned[cell[1]] || turned[cell[2]])
-      for (const int i : cell) {
-        samples_[i].chart = ofMap_[i].chart;
-        samples_[i].parameter = ofMap_[i].parameter;
-        emphasis_[i] = kFoldEmphasis;
-      }
+  for (const auto& cell : cellsAround(turnedOver))
+    for (const int i : cell) {
+      samples_[i].chart = ofMap_[i].chart;
+      samples_[i].parameter = ofMap_[i].parameter;
+      emphasis_[i] = kFoldEmphasis;
+    }
 }
 
 /// On new knots: the map's parameters, which are smooth where the map is, or those corrected on the coarser
@@ -279,11 +286,8 @@ void FitRounds::keepIfEnough() {
 /// over and the next ones: samples see the surfaces only where the region is.
 bool FitRounds::foldsStayNear() const {
   constexpr int kSteps = 4;
-  std::vector<char> turned(samples_.size(), 0);
-  for (const int i : deviation_.turnedOver) turned[i] = 1;
-  for (const auto& cell : cells_) {
+  for (const auto& cell : cellsAround(deviation_.turnedOver)) {
     const SurfaceSample &a = samples_[cell[0]], &b = samples_[cell[1]], &c = samples_[cell[2]];
-    if (!turned[cell[0]] && !turned[cell[1]] && !turned[cell[2]]) continue;
     if (a.chart != b.chart || a.chart != c.chart) continue;
     const auto& surface = result_.surfaces[a.chart];
     if (surface.closedU) continue;

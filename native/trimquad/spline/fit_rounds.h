@@ -98,6 +98,7 @@ class FitRounds {
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
   static void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples);
   void correct();
+  std::vector<std::array<int, 3>> cellsAround(const std::vector<int>& chosen) const;
   void unfold(const std::vector<int>& turnedOver);
   void chooseParameters();
   void keepIfEnough();
