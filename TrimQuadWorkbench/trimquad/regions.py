@@ -131,7 +131,9 @@ def _map_region(item, index, result, progress):
     item.edge_length, item.fill_holes = result.options.edge_length, result.options.fill_holes
     for halving in range(HALVINGS + 1):
         try:
-            return _try_region(item, index, result, progress)
+            _try_region(item, index, result, progress)
+            if item.fitted is not None and item.fitted.folded:
+                _fit_another_way(item, index, result, progress)
         except Error as error:
             if error.kind == "cancelled":
                 raise
@@ -149,8 +151,9 @@ def _map_region(item, index, result, progress):
 
 
 def _fit_another_way(item, index, result, progress):
-    """Surfaces over another map of the region, where none fits over its own: one that goes on behind small holes, and of a
-    mesh one that does not follow its sharp edges. The region's quads stay as they are. Whether they could be fitted."""
+    """Surfaces over another map of the region, where none fits over its own or only with folds: one that goes on behind small
+    holes, and of a mesh one that does not follow its sharp edges. The region's quads stay as they are. Whether they could be
+    fitted: instead of surfaces with folds, without any and with no more control points."""
     if item.quads is None:
         return False
     native = load()
@@ -172,8 +175,9 @@ def _fit_another_way(item, index, result, progress):
             if fill_holes > item.fill_holes and not _has_holes(other, index, result, progress):
                 continue
             _try_region(other, index, result, progress)
-            item.fitted, item.fitted_from = other.fitted, other
-            return True
+            if _is_better(other.fitted, item.fitted):
+                item.fitted, item.fitted_from = other.fitted, other
+                return True
         except Error as error:
             if error.kind == "cancelled":
                 raise
@@ -182,6 +186,11 @@ def _fit_another_way(item, index, result, progress):
                 item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
     native.place_region(result.model, index, item.mapped_region)
     return False
+
+
+def _is_better(fitted, than):
+    """Whether surfaces are to replace such as fold, or none."""
+    return than is None or (not fitted.folded and fitted.control_points <= than.control_points)
 
 
 def _has_holes(item, index, result, progress):

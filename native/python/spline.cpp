@@ -25,6 +25,12 @@ py::list foldedOf(const FittedSurface& fit) {
   return places;
 }
 
+std::size_t controlPointsOf(const FittedSurface& fit) {
+  std::size_t sum = fit.surface.poles.size();
+  for (const SplineSurface& surface : fit.surfaces) sum += surface.poles.size();
+  return sum;
+}
+
 py::list deviationsOf(const FittedSurface& fit) {
   py::list charts;
   for (const ChartDeviation& d : fit.deviations)
@@ -41,6 +47,7 @@ void bindSpline(py::module_& m) {
       .def_property_readonly("deviations", &deviationsOf, "by chart: largest, rms, place of the largest")
       .def_property_readonly("folded", &foldedOf)
       .def_readonly("samples", &FittedSurface::samples)
+      .def_property_readonly("control_points", &controlPointsOf, "of all its surfaces, before they are trimmed")
       .def_readonly("rounds", &FittedSurface::rounds)
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")

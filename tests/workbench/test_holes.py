@@ -2,6 +2,7 @@
 import json
 import math
 import sys
+import types
 
 import numpy
 import pytest
@@ -313,6 +314,21 @@ def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay
     result.shape.check(True)
     points, _, _ = region.map
     assert len(points) == region.region.vertices, "the map of the quads is that of the region itself"
+
+
+@pytest.mark.parametrize("folds, control_points, taken", [(0, 400, True), (0, 401, False), (1, 10, False)])
+def test_folds_give_way_to_surfaces_without_that_need_no_more_control_points(monkeypatch, folds, control_points, taken):
+    def fitted(folds, control_points):
+        return types.SimpleNamespace(folded=[(0.0, 0.0, 0.0)] * folds, control_points=control_points, samples=1000)
+
+    fits = [fitted(1, 400), fitted(folds, control_points)]
+    monkeypatch.setattr(sys.modules["trimquad.regions"], "fit", lambda *_: fits.pop(0))
+    monkeypatch.setattr(sys.modules["trimquad.convert"], "trim", lambda *_: None)
+    (region,) = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0)).regions
+    assert fits == [] and region.error is None
+    assert (region.fitted_from is not region) == taken
+    assert region.fitted.control_points == (control_points if taken else 400)
+    assert region.fitted_from.map is not None and region.polygons is not None
 
 
 def test_where_nothing_fits_at_all_the_region_is_left_as_it_was(monkeypatch):
