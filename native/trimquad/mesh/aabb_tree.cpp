@@ -157,6 +157,7 @@ TriangleTree::Hit TriangleTree::closest(const Vector3d& p) const {
 
 std::optional<TriangleTree::Hit> TriangleTree::closestFacing(const Vector3d& p,
                                                              const Vector3d& facing) const {
+  if (facing.isZero(0)) return std::nullopt;  // which no triangle faces, as a search through all would find
   return search(p, [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return (b - a).cross(c - a).dot(facing) > 0;
   });

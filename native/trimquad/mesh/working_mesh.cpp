@@ -28,7 +28,8 @@ WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const Rem
       surface_(*region.surface),
       options_(options),
       creases_(creases),
-      onCrease_(mesh.n_vertices(), 0) {
+      onCrease_(mesh.n_vertices(), 0),
+      settled_(mesh.n_edges(), 0) {
   for (const auto& [a, b] : creases) onCrease_[a.idx()] = onCrease_[b.idx()] = 1;
   for (const auto v : mesh.vertices()) {
     normal.push_back(onCrease_[v.idx()] ? Vector3d(0, 0, 0) : normalOnSheet(v));
@@ -115,6 +116,14 @@ VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfa
   return mesh.add_vertex(point);
 }
 
+void WorkingMesh::disturb(VertexHandle v) {
+  settled_.resize(mesh.n_edges(), 0);
+  for (auto h = mesh.cvoh_begin(v); h.is_valid(); ++h) {
+    settled_[mesh.edge_handle(*h).idx()] = 0;
+    settled_[mesh.edge_handle(mesh.next_halfedge_handle(*h)).idx()] = 0;
+  }
+}
+
 double WorkingMesh::splitQuality(HalfedgeHandle h, const Vector3d& point, const Vector3d& pointNormal) const {
   double worst = 1;
   for (const auto g : {h, mesh.opposite_halfedge_handle(h)}) {
@@ -136,6 +145,7 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
     const auto v = addVertex(surface_.closest(middle).point, Vector3d(0, 0, 0));
     mesh.split(e, v);
     edgeCurve.resize(mesh.n_edges());
+    disturb(v);
     onCrease_[v.idx()] = 1;
     creases_.erase(ordered(a, b));
     creases_.insert(ordered(a, v));
@@ -156,6 +166,7 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   size[v.idx()] = std::min(size[v.idx()], inherited);
   mesh.split(e, v);
   edgeCurve.resize(mesh.n_edges());
+  disturb(v);
   return true;
 }
 
@@ -169,14 +180,17 @@ VertexHandle WorkingMesh::splitBoundary(EdgeHandle e, double t, const Vector3d& 
   parameter[v.idx()] = t;
   mesh.split(e, v);
   edgeCurve.resize(mesh.n_edges());
+  disturb(v);
   for (const auto end : {a, b}) edgeCurve[mesh.edge_handle(mesh.find_halfedge(v, end)).idx()] = curve;
   return v;
 }
 
 void WorkingMesh::splitFace(FaceHandle f) {
   const auto foot = surface_.closestFacing(mesh.calc_face_centroid(f), mesh.calc_face_normal(f));
-  mesh.split(f, addVertex(foot.point, foot.normal));
+  const auto v = addVertex(foot.point, foot.normal);
+  mesh.split(f, v);
   edgeCurve.resize(mesh.n_edges());
+  disturb(v);
 }
 
 std::optional<double> WorkingMesh::qualityAfterCollapse(HalfedgeHandle h) const {
@@ -198,10 +212,11 @@ void WorkingMesh::collapse(HalfedgeHandle h) {
     curve = edgeCurve[mesh.edge_handle(h).idx()];
   }
   mesh.collapse(h);
+  disturb(to);
   if (curve) edgeCurve[mesh.edge_handle(mesh.find_halfedge(neighbour, to)).idx()] = curve;
 }
 
-bool WorkingMesh::flipIfBetter(EdgeHandle e) {
+bool WorkingMesh::isBetterFlipped(EdgeHandle e) const {
   if (mesh.is_boundary(e)) return false;
   const auto h = mesh.halfedge_handle(e, 0), o = mesh.halfedge_handle(e, 1);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
@@ -214,8 +229,23 @@ bool WorkingMesh::flipIfBetter(EdgeHandle e) {
   const double after =
       std::min(quality(mesh.point(c), mesh.point(d), mesh.point(b), (base + normal[b.idx()]).normalized()),
                quality(mesh.point(d), mesh.point(c), mesh.point(a), (base + normal[a.idx()]).normalized()));
-  if (after <= before + 1e-6 || !mesh.is_flip_ok(e)) return false;
+  return after > before + 1e-6;
+}
+
+bool WorkingMesh::flipIfBetter(EdgeHandle e) {
+  if (settled_[e.idx()]) return false;
+  if (!isBetterFlipped(e)) {
+    settled_[e.idx()] = 1;
+    return false;
+  }
+  // Whether it can be depends on triangles farther away.
+  if (!mesh.is_flip_ok(e)) return false;
   mesh.flip(e);
+  for (const int side : {0, 1}) {
+    const auto h = mesh.halfedge_handle(e, side);
+    settled_[mesh.edge_handle(mesh.next_halfedge_handle(h)).idx()] = 0;
+    settled_[mesh.edge_handle(mesh.prev_halfedge_handle(h)).idx()] = 0;
+  }
   return true;
 }
 
@@ -232,6 +262,7 @@ void WorkingMesh::smooth(VertexHandle v) {
   if (after < before && after < kGoodEnough) return;
   mesh.set_point(v, foot.point);
   normal[v.idx()] = foot.normal;
+  disturb(v);
 }
 
 void WorkingMesh::updateSizes() {

@@ -57,7 +57,8 @@ class WorkingMesh {
   std::optional<double> qualityAfterCollapse(HalfedgeHandle h) const;
   void collapse(HalfedgeHandle h);
 
-  /// Flips an inner edge where that improves the worse of its two triangles and makes no chord.
+  /// Flips an inner edge where that improves the worse of its two triangles and makes no chord. Quick where
+  /// neither changed since the edge was looked at last.
   bool flipIfBetter(EdgeHandle e);
   /// Moves an inner vertex towards the middle of its neighbours along the surface, if no triangle gets bad by
   /// it.
@@ -71,6 +72,9 @@ class WorkingMesh {
 
  private:
   VertexHandle addVertex(const Eigen::Vector3d& point, const Eigen::Vector3d& surfaceNormal);
+  /// To be called when a vertex or the triangles around it changed: their sides may be flipped again.
+  void disturb(VertexHandle v);
+  bool isBetterFlipped(EdgeHandle e) const;
   /// The worst quality of the four triangles that splitting the halfedge's edge at `point` makes.
   double splitQuality(HalfedgeHandle h, const Eigen::Vector3d& point,
                       const Eigen::Vector3d& pointNormal) const;
@@ -89,6 +93,7 @@ class WorkingMesh {
   RemeshOptions options_;
   Creases creases_;
   std::vector<char> onCrease_;  ///< by vertex
+  std::vector<char> settled_;   ///< by edge: it is not to be flipped as its two triangles are
 };
 
 }  // namespace trimquad

@@ -67,6 +67,15 @@ TEST(TriangleTree, manyEqualTrianglesDoNotBreakTheTree) {
   EXPECT_EQ(TriangleTree(soup.points, soup.triangles).closest({0.25, 0.25, 2}).squaredDistance, 4);
 }
 
+TEST(TriangleTree, tellsTheSidesOfAThinPlateApart) {
+  const TriangleTree plate({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, -0.1}, {4, 0, -0.1}, {0, 4, -0.1}},
+                           {{0, 1, 2}, {3, 5, 4}});
+  EXPECT_EQ(plate.closestFacing({1, 1, -0.08}, {0, 0, 1})->triangle, 0);
+  EXPECT_EQ(plate.closestFacing({1, 1, -0.02}, {0, 0, -1})->triangle, 1);
+  EXPECT_FALSE(plate.closestFacing({1, 1, 0}, {1, 0, 0}));
+  EXPECT_FALSE(plate.closestFacing({1, 1, 0}, {0, 0, 0}));
+}
+
 TEST(TriangleTree, needsATriangle) {
   EXPECT_TRUE(errorOf([] { TriangleTree({{0, 0, 0}}, {}); }));
 }
