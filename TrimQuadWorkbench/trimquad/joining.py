@@ -83,10 +83,13 @@ def _refit_faulty(result, progress):
 
 
 def _refit(item, charts, error, result, progress):
-    """Fits a region again in the next of the ways there are. Where there is none left, its error is kept instead.
+    """Fits a region again in the next of the ways there are, then over another map. Where there is none left, its error is
+    kept instead.
 
-    charts: those whose faces are at fault; empty where the region's edges are
+    charts: those whose faces are at fault; empty where the region's edges are, many of which small holes have
     """
+    if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
+        return
     try:
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):
@@ -101,6 +104,8 @@ def _refit(item, charts, error, result, progress):
     except Error as failure:
         if failure.kind == "cancelled":
             raise
+        if regions.fit_over_another_map(item, result, progress):
+            return
         item.fitted = None
         item.error = failure
 

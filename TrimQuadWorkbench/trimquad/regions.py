@@ -18,6 +18,18 @@ HALVINGS = 3
 SMALL_HOLE = 8
 
 
+class OtherMap(NamedTuple):
+    """A map of a region that surfaces may be fitted over instead of that of its quads."""
+
+    behind_small_holes: bool  # it goes on there
+    creases_rounded: bool  # it does not follow the sharp edges of a mesh
+
+
+BEHIND_HOLES = OtherMap(behind_small_holes=True, creases_rounded=False)
+# In the order in which they are tried.
+OTHER_MAPS = (BEHIND_HOLES, OtherMap(False, True), OtherMap(True, True))
+
+
 class RegionResult:
     """What became of one region. Stages that were not reached are None; `error` says why.
 
@@ -38,6 +50,7 @@ class RegionResult:
         self.fill_holes = 0.0  # holes shorter than this are bridged
         self.refits = self.field_edits = 0
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
+        self.other_maps = []  # those that were tried
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.seconds = {}
         self.cut_from = None
@@ -133,7 +146,7 @@ def _map_region(item, index, result, progress):
         try:
             _try_region(item, index, result, progress)
             if item.fitted is not None and item.fitted.folded:
-                _fit_another_way(item, index, result, progress)
+                fit_over_another_map(item, result, progress, better_than=item.fitted)
         except Error as error:
             if error.kind == "cancelled":
                 raise
@@ -143,80 +156,116 @@ def _map_region(item, index, result, progress):
                 item.region = item.mapped_region
                 item.grid = item.quads = item.fitted = None
                 continue
-            if not (error.stage == "fit" and _fit_another_way(item, index, result, progress)):
+            if not (error.stage == "fit" and fit_over_another_map(item, result, progress)):
                 item.error = error
         except MemoryError as error:
             item.error = system_error("memory", error)
         return
 
 
-def _fit_another_way(item, index, result, progress):
-    """Surfaces over another map of the region, where none fits over its own or only with folds: one that goes on behind small
-    holes, and of a mesh one that does not follow its sharp edges. The region's quads stay as they are. Whether they could be
-    fitted: instead of surfaces with folds, without any and with no more control points."""
+def _try_region(item, index, result, progress):
+    """The stages of one region in their order, as far as what is to be written needs them."""
+    _bridge(item, index, result, progress)
+    _map(item, index, result, progress)
+    options = result.options
+    if options.wants("extract"):
+        item.quads = _polygonal(_run(item, progress, "extract", load().extract_quads, item.grid, item.mapped_region),
+                                item, options)
+        if options.merge_slivers > 0:
+            load().merge_slivers(item.quads, options.merge_slivers)
+    if options.wants("fit"):
+        item.fitted = _run(item, progress, "fit", fit, item, result)
+
+
+def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, better_than=None):
+    """Surfaces of a region over the next of other maps of it, where none can be fitted or trimmed over its own. The
+    region's quads stay as they are, and so do the surfaces where no other map has any. Whether one has.
+
+    better_than: surfaces with folds; only such as have none and no more control points are taken
+    """
     if item.quads is None:
         return False
     native = load()
+    index = result.regions.index(item)
     if item.mapped_region is item.region:
         item.region = item.mapped_region = native.copy_region(item.region)
     else:
         item.mapped_region = native.copy_region(item.mapped_region)
-    small = SMALL_HOLE * item.edge_length
-    regions = [(item.region, small)]
-    if result.source.kind == "mesh" and not result.options.align and item.region.features["aligned_edges"]:
-        smooth = native.without_creases(item.region)
-        if smooth.features["aligned_edges"] < item.region.features["aligned_edges"]:
-            regions += [(smooth, item.fill_holes), (smooth, small)]
-    for region, fill_holes in regions:
+    for way in ways:
+        if way in item.other_maps:
+            continue
+        item.other_maps.append(way)
+        region = _without_creases(item, result) if way.creases_rounded else item.region
+        if region is None:
+            continue
+        placed = native.copy_region(result.model.regions[index])
         native.place_region(result.model, index, region)
         other = RegionResult(result.model.regions[index])
-        other.edge_length, other.guidance, other.fill_holes = item.edge_length, item.guidance, fill_holes
+        other.edge_length, other.guidance = item.edge_length, item.guidance
+        other.fill_holes = max(item.fill_holes, SMALL_HOLE * item.edge_length if way.behind_small_holes else 0)
         try:
-            if fill_holes > item.fill_holes and not _has_holes(other, index, result, progress):
+            _bridge(other, index, result, progress)
+            if way.behind_small_holes and not _bridges_more(other, item):
                 continue
-            _try_region(other, index, result, progress)
-            if _is_better(other.fitted, item.fitted):
-                item.fitted, item.fitted_from = other.fitted, other
-                return True
+            _map(other, index, result, progress)
+            other.fitted = _run(other, progress, "fit", fit, other, result)
+            if better_than is not None and not _is_better(other.fitted, better_than):
+                item.other_maps.remove(way)  # it may be taken where these turn out to be at fault
+                continue
+            item.fitted, item.fitted_from = other.fitted, other
+            item.refits, item.bisections = 0, []
+            return True
         except Error as error:
             if error.kind == "cancelled":
                 raise
         finally:
             for stage, seconds in other.seconds.items():
                 item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
-    native.place_region(result.model, index, item.mapped_region)
+            if item.fitted_from is not other:
+                native.place_region(result.model, index, placed)
     return False
 
 
 def _is_better(fitted, than):
-    """Whether surfaces are to replace such as fold, or none."""
-    return than is None or (not fitted.folded and fitted.control_points <= than.control_points)
+    """Whether surfaces are to replace such as fold."""
+    return not fitted.folded and fitted.control_points <= than.control_points
 
 
-def _has_holes(item, index, result, progress):
-    """Whether bridging would close a hole of a region."""
-    with progress.stage("bridge", item.name) as native_progress:
-        return load().bridge_holes(result.model, index, item.fill_holes, native_progress)[1]["bridged"] > 0
+def _without_creases(item, result):
+    """A region of a mesh that does not follow its sharp edges, or None where it follows none that may be rounded."""
+    if result.source.kind != "mesh" or result.options.align or not item.region.features["aligned_edges"]:
+        return None
+    smooth = load().without_creases(item.region)
+    return smooth if smooth.features["aligned_edges"] < item.region.features["aligned_edges"] else None
 
 
-def _try_region(item, index, result, progress):
-    """The stages of one region in their order, as far as what is to be written needs them."""
-    native = load()
-    options = result.options
+def _bridges_more(item, other):
+    """Whether more holes of a region are bridged than of another."""
+    return item.holes["bridged"] > (other.holes["bridged"] if other.holes else 0)
 
-    def run(stage, function, *arguments):
-        with progress.stage(stage, item.name) as native_progress:
-            started = time.monotonic()
-            try:
-                return function(*arguments, native_progress)
-            finally:
-                item.seconds[stage] = time.monotonic() - started
 
+def _run(item, progress, stage, function, *arguments):
+    """What a stage gives; the seconds that it takes are the region's."""
+    with progress.stage(stage, item.name) as native_progress:
+        started = time.monotonic()
+        try:
+            return function(*arguments, native_progress)
+        finally:
+            item.seconds[stage] = time.monotonic() - started
+
+
+def _bridge(item, index, result, progress):
     item.bridged = item.region
     if item.fill_holes > 0:
-        item.bridged, item.holes = run("bridge", native.bridge_holes, result.model, index, item.fill_holes)
-    seed = run("seamless", native.seed, item.bridged, str(options.field), item.guidance, options.field_weight,
-               item.edge_length)
+        item.bridged, item.holes = _run(item, progress, "bridge", load().bridge_holes, result.model, index, item.fill_holes)
+
+
+def _map(item, index, result, progress):
+    """The stages up to the grid map."""
+    native = load()
+    options = result.options
+    seed = _run(item, progress, "seamless", native.seed, item.bridged, str(options.field), item.guidance,
+                options.field_weight, item.edge_length)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     if seed.refined:
         # The model's region gets halved edges; the field and all maps are of these.
@@ -226,27 +275,21 @@ def _try_region(item, index, result, progress):
         item.region = item.mapped_region = region
     item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
     if options.wants("partition"):
-        item.tmesh = run("partition", native.partition, item.seamless)
+        item.tmesh = _run(item, progress, "partition", native.partition, item.seamless)
     if options.wants("quantize"):
-        item.quantization = run("quantize", native.quantize, item.tmesh, options.optimal)
+        item.quantization = _run(item, progress, "quantize", native.quantize, item.tmesh, options.optimal)
     if options.wants("optimize"):
-        _grid_map(item, index, result, run)
-    if options.wants("extract"):
-        item.quads = _polygonal(run("extract", native.extract_quads, item.grid, item.mapped_region), item, options)
-        if options.merge_slivers > 0:
-            native.merge_slivers(item.quads, options.merge_slivers)
-    if options.wants("fit"):
-        item.fitted = run("fit", fit, item, result)
+        _grid_map(item, index, result, progress)
 
 
-def _grid_map(item, index, result, run):
+def _grid_map(item, index, result, progress):
     """By the direct route, the constructive one, or the first and where it fails the other."""
     native = load()
     route = result.options.route
     if route != "reembed":
         try:
-            item.grid = run("optimize", native.grid_map, item.bridged, item.seamless, item.tmesh, item.quantization,
-                            route == "direct")
+            item.grid = _run(item, progress, "optimize", native.grid_map, item.bridged, item.seamless, item.tmesh,
+                             item.quantization, route == "direct")
             item.embedding = {"route": "direct", "inserted_vertices": 0, "collapses": 0, "splits": 0}
             return
         except Error as error:
@@ -257,9 +300,9 @@ def _grid_map(item, index, result, run):
     if item.bridged is item.region:
         item.bridged = before
     item.region = before
-    embedded = run("reembed", native.embed, item.seamless, item.tmesh, item.quantization)
-    item.grid, counters = run("optimize", native.embedded_grid_map, result.model, index, item.bridged, item.seamless,
-                                   embedded)
+    embedded = _run(item, progress, "reembed", native.embed, item.seamless, item.tmesh, item.quantization)
+    item.grid, counters = _run(item, progress, "optimize", native.embedded_grid_map, result.model, index, item.bridged,
+                               item.seamless, embedded)
     item.mapped_region = result.model.regions[index]
     item.embedding = {"route": "reembedded", **counters}
 

@@ -337,3 +337,49 @@ def test_where_nothing_fits_at_all_the_region_is_left_as_it_was(monkeypatch):
     assert region.error.stage == "fit" and region.fitted is None and region.fitted_from is region
     assert result.shape is None and region.polygons is not None
     assert result.model.regions[0].boundary_loops == 3
+
+
+class _TrimsOnlyBehindHoles:
+    """The compiled module, but where no surface is trimmed whose map does not go on behind a hole."""
+
+    def __init__(self, native):
+        self._native, self.own, self.failures = native, None, 0
+
+    def __getattr__(self, name):
+        return getattr(self._native, name)
+
+    def trim_model(self, model, grids, fitted, *rest):
+        self.own = self.own or grids[0]
+        if grids[0] is self.own:
+            self.failures += 1
+            raise trimquad.Error("stage", "fit", "trims cross", f"{model.regions[0].name}, Edge1")
+        return self._native.trim_model(model, grids, fitted, *rest)
+
+
+def test_where_trims_fail_surfaces_go_on_behind_small_holes_before_anything_else_is_tried(monkeypatch):
+    module = sys.modules["trimquad.joining"]
+    native = _TrimsOnlyBehindHoles(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+    (region,) = result.regions
+    assert native.failures == 1 and region.error is None
+    assert region.fitted_from.holes["bridged"] == 1 and region.refits == 0
+    assert len(result.shape.Faces) == 1 and len(result.shape.Faces[0].Wires) == 3
+    result.shape.check(True)
+    points, _, _ = region.map
+    assert len(points) == region.region.vertices, "the map of the quads is that of the region itself"
+
+
+def test_a_hole_is_bridged_once_for_each_map(monkeypatch):
+    module = sys.modules["trimquad.regions"]
+    native = _FitsNoHoles(module.load(), 3)
+    lengths = []
+
+    def bridge_holes(model, index, length, progress):
+        lengths.append(length)
+        return _FitsNoHoles.bridge_holes(native, model, index, length, progress)
+
+    native.bridge_holes = bridge_holes
+    monkeypatch.setattr(module, "load", lambda: native)
+    trimquad.convert(sheet(), trimquad.Options(edge_length=4.0))
+    assert lengths == [module.SMALL_HOLE * 4.0]

@@ -34,9 +34,6 @@ constexpr double kEmphasis = 10;
 /// The same of samples next to where the surface is turned over, which keep the map's parameters: these fold
 /// nowhere.
 constexpr double kFoldEmphasis = 20;
-/// Factor of the fairness around places that stay turned over, each round, and the largest; and how far
-/// around, quads: on wider knot intervals, knots are missing instead.
-constexpr double kFoldStiffens = 4, kStiffestFold = 1e5, kWidestSpot = 1;
 /// Only where the deviation is above this part of the largest one are knots inserted: it reaches a few spans
 /// beyond its cause, where it goes away by itself. Along a crease it does not, and all that fail are refined.
 constexpr double kWorstPart = 0.3;
@@ -219,19 +216,9 @@ void FitRounds::correct() {
   unfold(deviation_.turnedOver);
 }
 
-/// Those of the small triangles between samples that have a corner among these.
-std::vector<std::array<int, 3>> FitRounds::cellsAround(const std::vector<int>& chosen) const {
-  std::vector<char> isChosen(samples_.size(), 0);
-  for (const int i : chosen) isChosen[i] = 1;
-  std::vector<std::array<int, 3>> result;
-  for (const auto& cell : cells_)
-    if (isChosen[cell[0]] || isChosen[cell[1]] || isChosen[cell[2]]) result.push_back(cell);
-  return result;
-}
-
 /// Around samples where the surface is turned over: back to the map's parameters.
 void FitRounds::unfold(const std::vector<int>& turnedOver) {
-  for (const auto& cell : cellsAround(turnedOver))
+  for (const auto& cell : cellsAround(cells_, turnedOver))
     for (const int i : cell) {
       samples_[i].chart = ofMap_[i].chart;
       samples_[i].parameter = ofMap_[i].parameter;
@@ -272,7 +259,9 @@ void FitRounds::keepIfEnough() {
   if (kept_ && (folds > 0 ? folds >= kept_->folded.size()
                           : kept_->folded.empty() && deviation_.max > 0.95 * kept_->maxDeviation))
     return;
-  if (folds > 0 && !foldsStayNear()) return;
+  if (folds > 0 &&
+      !stayNear(result_.surfaces, samples_, cellsAround(cells_, deviation_.turnedOver), triangles_, enough_))
+    return;
   const auto failing = failing_;
   const auto turned = turned_;
   if (verified(enough_, kSmallFolds) &&
@@ -280,25 +269,6 @@ void FitRounds::keepIfEnough() {
     kept_ = result_;
   failing_ = failing;
   turned_ = turned;
-}
-
-/// Whether the surfaces stay within what is enough of the region between the samples where they are turned
-/// over and the next ones: samples see the surfaces only where the region is.
-bool FitRounds::foldsStayNear() const {
-  constexpr int kSteps = 4;
-  for (const auto& cell : cellsAround(deviation_.turnedOver)) {
-    const SurfaceSample &a = samples_[cell[0]], &b = samples_[cell[1]], &c = samples_[cell[2]];
-    if (a.chart != b.chart || a.chart != c.chart) continue;
-    const auto& surface = result_.surfaces[a.chart];
-    if (surface.closedU) continue;
-    for (int i = 0; i <= kSteps; ++i)
-      for (int j = 0; i + j <= kSteps; ++j) {
-        const Eigen::Vector2d x =
-            a.parameter + (i * (b.parameter - a.parameter) + j * (c.parameter - a.parameter)) / kSteps;
-        if (triangles_.closest(surface.point(x[0], x[1])).squaredDistance > enough_ * enough_) return false;
-      }
-  }
-  return true;
 }
 
 /// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
@@ -412,39 +382,16 @@ void FitRounds::refine() {
   if (idle_ > kPatience || !insertKnots() || poles() > policy_.maxPoles) throw unreachable();
 }
 
-/// More fairness where the surface is turned over in few places, the more the longer it stays so; and less
-/// again where that keeps it from the tolerance.
+/// More fairness where the surfaces are turned over in few places.
 void FitRounds::stiffenFolds() {
-  const auto holds = [](const Fairness::Spot& spot, const FitPlace& x) {
-    return spot.chart == x.chart && (spot.at - x.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
-  };
-  std::vector<char> fails(fairness_.spots.size(), 0), folds(fairness_.spots.size(), 0);
-  for (std::size_t k = 0; k < fails.size(); ++k)
-    for (const auto& x : failing_) fails[k] |= holds(fairness_.spots[k], x);
   if (deviation_.max <= kClose * tolerance_ &&
       double(deviation_.turnedOver.size()) <= kSmallFolds * double(samples_.size()))
     for (const int i : deviation_.turnedOver) folds_.push_back(feet_[i]);
-  bool covered = !folds_.empty();
-  for (const auto& x : folds_) {
-    bool isNew = true;
-    for (std::size_t k = 0; k < fairness_.spots.size(); ++k) {
-      if (!holds(fairness_.spots[k], x)) continue;
-      isNew = false;
-      if (k < folds.size()) folds[k] = 1;
-    }
+  foldSpots_.update(folds_, failing_, [&](const FitPlace& x) {
     const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
-    const double reach = std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
-    if (isNew && reach <= kWidestSpot) fairness_.spots.push_back({x.chart, x.parameter, reach, 1});
-    covered = covered && (!isNew || reach <= kWidestSpot);
-  }
-  foldsAreSpots_ = covered;
-  for (std::size_t k = 0; k < folds.size(); ++k) {
-    auto& spot = fairness_.spots[k];
-    if (fails[k])
-      spot.factor /= kFoldStiffens;
-    else if (folds[k])
-      spot.factor = std::min(kFoldStiffens * spot.factor, kStiffestFold);
-  }
+    return std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
+  });
+  fairness_.spots = foldSpots_.spots();
   folds_.clear();
 }
 

@@ -8,16 +8,11 @@
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/aabb_tree.h"
 #include "trimquad/spline/deviation.h"
+#include "trimquad/spline/fit_folds.h"
 #include "trimquad/spline/fit_surface.h"
 #include "trimquad/spline/spline_space.h"
 
 namespace trimquad {
-
-/// A parameter of one of the fitted surfaces.
-struct FitPlace {
-  int chart;
-  Eigen::Vector2d parameter;
-};
 
 /// The rounds of a fit, of one surface or of several that are joined: solve, measure, then correct the
 /// parameters or insert knots, until the tolerance holds. What the surfaces are is left to the derived class.
@@ -98,12 +93,10 @@ class FitRounds {
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
   static void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples);
   void correct();
-  std::vector<std::array<int, 3>> cellsAround(const std::vector<int>& chosen) const;
   void unfold(const std::vector<int>& turnedOver);
   void chooseParameters();
   void keepIfEnough();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
-  bool foldsStayNear() const;
   bool verified(double tolerance, double folds);
   std::vector<ChartDeviation> deviationsByChart(const std::vector<SurfaceSample>& control,
                                                 const std::vector<FitPlace>& feet) const;
@@ -114,7 +107,7 @@ class FitRounds {
   void stiffen(double factor);
   void stiffenFolds();
   /// Whether only folds are to go yet, and there is fairness where they are.
-  bool smoothsFolds() const { return kept_ && !kept_->folded.empty() && foldsAreSpots_; }
+  bool smoothsFolds() const { return kept_ && !kept_->folded.empty() && foldSpots_.coverFolds(); }
   State state() const;
   void restore(State state);
   int poles() const;
@@ -123,13 +116,13 @@ class FitRounds {
   const TriangleTree triangles_;  ///< of the region
   const Policy policy_;
   std::optional<FittedSurface> kept_;  ///< within what is enough
+  FoldSpots foldSpots_;
   Deviation deviation_, previous_;
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over
   std::vector<FitPlace> feet_, ofMap_;  ///< by sample: where its foot lies; where the map has it
   std::vector<double> emphasis_;        ///< by sample: factor of its weight
   State beforeCorrection_;
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
-  bool foldsAreSpots_ = false;  ///< all folds seen last
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0;

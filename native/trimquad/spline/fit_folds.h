@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "trimquad/mesh/aabb_tree.h"
+#include "trimquad/spline/spline_space.h"
+#include "trimquad/spline/surface_samples.h"
+
+namespace trimquad {
+
+/// A parameter of one of the fitted surfaces.
+struct FitPlace {
+  int chart;
+  Eigen::Vector2d parameter;
+};
+
+/// Those of the small triangles between samples that have a corner among the chosen samples.
+std::vector<std::array<int, 3>> cellsAround(const std::vector<std::array<int, 3>>& cells,
+                                            const std::vector<int>& chosen);
+
+/// Whether surfaces stay within a distance of the region all over small triangles between samples: samples
+/// see the surfaces only where the region is, not the folds between them. Triangles between charts are left
+/// out.
+bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
+              const std::vector<std::array<int, 3>>& cells, const TriangleTree& region, double distance);
+
+/// Places of more fairness where surfaces are turned over in few places.
+class FoldSpots {
+ public:
+  /// More of it where folds lie, the more the longer they stay; and less again where samples fail, for it may
+  /// keep them from the tolerance.
+  /// \param knotInterval by place: the longer side of its knot rectangle, quads
+  void update(const std::vector<FitPlace>& folds, const std::vector<FitPlace>& failing,
+              const std::function<double(const FitPlace&)>& knotInterval);
+  const std::vector<Fairness::Spot>& spots() const { return spots_; }
+  /// Whether there were folds last time, and all of them lie in spots. Where knot intervals are wide, knots
+  /// are missing instead.
+  bool coverFolds() const { return coverFolds_; }
+
+ private:
+  std::vector<Fairness::Spot> spots_;
+  bool coverFolds_ = false;
+};
+
+}  // namespace trimquad

@@ -1,0 +1,108 @@
+#include "trimquad/spline/fit_folds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace trimquad {
+namespace {
+
+constexpr int kAround = 8;
+
+/// A tube of radius 1 and length 1 over [0, 8) x [0, 2], and samples at the ends of a small triangle across
+/// its seam.
+struct Tube {
+  SplineSpace space;
+  std::vector<SplineSurface> surfaces;
+  TriangleTree region = triangles();
+  std::vector<SurfaceSample> samples;
+  std::vector<std::array<int, 3>> cells{{0, 1, 2}};
+
+  /// \param bulge of the surface in the seam, between the samples
+  explicit Tube(double bulge) {
+    for (int i = 0; i <= 4 * kAround; ++i) space.u.breaks.push_back(i / 4.0);
+    space.u.closed = true;
+    space.v.breaks = {0, 1, 2};
+    std::vector<Datum> data;
+    for (int i = 0; i < 20 * kAround; ++i)
+      for (int j = 0; j < 20; ++j) {
+        const Eigen::Vector2d x(i / 20.0, (j + 0.5) / 10);
+        const double fromSeam = std::min(x[0], kAround - x[0]);
+        data.push_back({x, at(x, 1 + (fromSeam < 0.1 ? bulge : 0)), 1});
+      }
+    surfaces.push_back(*space.leastSquares(data, {1e-9, 1e-9}, Progress()));
+    for (const Eigen::Vector2d& x :
+         {Eigen::Vector2d(7.6, 1), Eigen::Vector2d(0.4, 1), Eigen::Vector2d(7.6, 1.2)}) {
+      auto& s = samples.emplace_back();
+      s.chart = 0;
+      s.parameter = x;
+    }
+  }
+
+  static TriangleTree triangles() {
+    std::vector<Eigen::Vector3d> points;
+    std::vector<std::array<int, 3>> triangles;
+    constexpr int n = 200;
+    for (int i = 0; i < n; ++i) {
+      const double u = double(kAround) * i / n;
+      points.push_back(at({u, 0}, 1));
+      points.push_back(at({u, 2}, 1));
+      const int a = 2 * i, b = 2 * ((i + 1) % n);
+      triangles.push_back({a, b, b + 1});
+      triangles.push_back({a, b + 1, a + 1});
+    }
+    return {std::move(points), std::move(triangles)};
+  }
+
+  static Eigen::Vector3d at(const Eigen::Vector2d& x, double radius) {
+    const double angle = 2 * M_PI * x[0] / kAround;
+    return {radius * std::cos(angle), radius * std::sin(angle), x[1] / 2};
+  }
+};
+
+TEST(FitFolds, betweenSamplesOnBothSidesOfASeamTheSurfaceIsLookedAtToo) {
+  const Tube round(0), bulging(0.2);
+  EXPECT_TRUE(stayNear(round.surfaces, round.samples, round.cells, round.region, 0.01));
+  EXPECT_FALSE(stayNear(bulging.surfaces, bulging.samples, bulging.cells, bulging.region, 0.01));
+  EXPECT_TRUE(stayNear(bulging.surfaces, bulging.samples, bulging.cells, bulging.region, 0.5));
+}
+
+TEST(FitFolds, trianglesBetweenChartsAreLeftOut) {
+  Tube bulging(0.2);
+  bulging.samples[1].chart = 1;
+  EXPECT_TRUE(stayNear(bulging.surfaces, bulging.samples, bulging.cells, bulging.region, 0.01));
+}
+
+TEST(FitFolds, cellsAroundSamplesHaveOneOfThemAsACorner) {
+  const std::vector<std::array<int, 3>> cells{{0, 1, 2}, {1, 3, 2}, {3, 4, 5}};
+  EXPECT_TRUE(cellsAround(cells, {}).empty());
+  EXPECT_EQ(cellsAround(cells, {3}), (std::vector<std::array<int, 3>>{{1, 3, 2}, {3, 4, 5}}));
+  EXPECT_EQ(cellsAround(cells, {5}), (std::vector<std::array<int, 3>>{{3, 4, 5}}));
+}
+
+TEST(FitFolds, spotsGrowStifferWhileTheyFoldAndGiveWayWhereTheyFail) {
+  const auto fine = [](const FitPlace&) { return 0.25; };
+  const FitPlace fold{0, {3, 3}}, near{0, {3.2, 3}}, elsewhere{1, {3, 3}};
+  FoldSpots spots;
+  spots.update({fold, near}, {}, fine);
+  ASSERT_EQ(spots.spots().size(), 1u) << "the second lies in the spot of the first";
+  EXPECT_EQ(spots.spots()[0].factor, 1);
+  EXPECT_TRUE(spots.coverFolds());
+  spots.update({near, elsewhere}, {}, fine);
+  ASSERT_EQ(spots.spots().size(), 2u);
+  EXPECT_EQ(spots.spots()[0].factor, 4);
+  spots.update({near}, {fold}, fine);
+  EXPECT_EQ(spots.spots()[0].factor, 1);
+  spots.update({}, {}, fine);
+  EXPECT_FALSE(spots.coverFolds());
+}
+
+TEST(FitFolds, whereKnotIntervalsAreWideThereAreNoSpots) {
+  FoldSpots spots;
+  spots.update({{0, {3, 3}}}, {}, [](const FitPlace&) { return 2.0; });
+  EXPECT_TRUE(spots.spots().empty());
+  EXPECT_FALSE(spots.coverFolds());
+}
+
+}  // namespace
+}  // namespace trimquad
