@@ -19,15 +19,29 @@ SMALL_HOLE = 8
 
 
 class OtherMap(NamedTuple):
-    """A map of a region that surfaces may be fitted over instead of that of its quads."""
+    """A map of a region that surfaces may be fitted over; with nothing special about it, that of its quads."""
 
-    behind_small_holes: bool  # it goes on there
-    creases_rounded: bool  # it does not follow the sharp edges of a mesh
+    behind_small_holes: bool = False  # it goes on there
+    creases_rounded: bool = False  # it does not follow the sharp edges of a mesh
+    without_singularities: bool = False  # it has none, at the cost of distortion: one surface holds the region
 
 
-BEHIND_HOLES = OtherMap(behind_small_holes=True, creases_rounded=False)
+# The mean symmetric Dirichlet energy of a map without singularities up to which surfaces are fitted over it; 4 is an
+# isometry.
+MOST_DISTORTION = 10
+
+OWN_MAP = OtherMap()
+BEHIND_HOLES = OtherMap(behind_small_holes=True)
+WITHOUT_SINGULARITIES = OtherMap(without_singularities=True)
 # In the order in which they are tried.
-OTHER_MAPS = (BEHIND_HOLES, OtherMap(False, True), OtherMap(True, True))
+OTHER_MAPS = (
+    OWN_MAP,
+    BEHIND_HOLES,
+    WITHOUT_SINGULARITIES,
+    OtherMap(creases_rounded=True),
+    OtherMap(creases_rounded=True, without_singularities=True),
+    OtherMap(creases_rounded=True, behind_small_holes=True),
+)
 
 
 class RegionResult:
@@ -48,6 +62,7 @@ class RegionResult:
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
         self.fill_holes = 0.0  # holes shorter than this are bridged
+        self.without_singularities = False  # only a map that has none will do
         self.refits = self.field_edits = 0
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
         self.other_maps = []  # those that were tried
@@ -66,7 +81,13 @@ class RegionResult:
     @property
     def holes_bridged_to_fit(self):
         """How many holes the map of the B-spline surfaces goes on behind, though that of the quads does not."""
-        return 0 if self.fitted_from is self or not self.fitted_from.holes else self.fitted_from.holes["bridged"]
+        to_fit, own = (r.holes["bridged"] if r.holes else 0 for r in (self.fitted_from, self))
+        return to_fit - own
+
+    @property
+    def fitted_without_singularities(self):
+        """Whether the map of the B-spline surfaces has no singularities, though that of the quads has."""
+        return self.fitted_from is not self and self.fitted_from.without_singularities
 
     @property
     def polygons(self):
@@ -146,7 +167,9 @@ def _map_region(item, index, result, progress):
         try:
             _try_region(item, index, result, progress)
             if item.fitted is not None and item.fitted.folded:
-                fit_over_another_map(item, result, progress, better_than=item.fitted)
+                most = item.fitted.control_points
+                fit_over_another_map(item, result, progress,
+                                     takes=lambda fitted: not fitted.folded and fitted.control_points <= most)
         except Error as error:
             if error.kind == "cancelled":
                 raise
@@ -173,24 +196,37 @@ def _try_region(item, index, result, progress):
                                 item, options)
         if options.merge_slivers > 0:
             load().merge_slivers(item.quads, options.merge_slivers)
-    if options.wants("fit"):
+    if options.wants("fit") and not _fit_one_surface(item, result, progress):
+        item.other_maps.append(OWN_MAP)
         item.fitted = _run(item, progress, "fit", fit, item, result)
 
 
-def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, better_than=None):
+def _fit_one_surface(item, result, progress):
+    """A single surface for a region whose own map has singularities, and so charts around them. Whether there is one that
+    does not fold."""
+    return bool(item.singularities) and fit_over_another_map(item, result, progress, [WITHOUT_SINGULARITIES],
+                                                             takes=lambda fitted: not fitted.folded)
+
+
+def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda fitted: True):
     """Surfaces of a region over the next of other maps of it, where none can be fitted or trimmed over its own. The
     region's quads stay as they are, and so do the surfaces where no other map has any. Whether one has.
 
-    better_than: surfaces with folds; only such as have none and no more control points are taken
+    takes: whether fitted surfaces are good enough to replace the region's own
     """
     if item.quads is None:
         return False
     native = load()
     index = result.regions.index(item)
     if item.mapped_region is item.region:
-        item.region = item.mapped_region = native.copy_region(item.region)
+        copied = native.copy_region(item.region)
+        if item.bridged is item.region:
+            item.bridged = copied
+        item.region = item.mapped_region = copied
     else:
         item.mapped_region = native.copy_region(item.mapped_region)
+    if not item.singularities:
+        item.other_maps.append(WITHOUT_SINGULARITIES)  # as is its own
     for way in ways:
         if way in item.other_maps:
             continue
@@ -202,15 +238,21 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, better_than=No
         native.place_region(result.model, index, region)
         other = RegionResult(result.model.regions[index])
         other.edge_length, other.guidance = item.edge_length, item.guidance
+        other.without_singularities = way.without_singularities
         other.fill_holes = max(item.fill_holes, SMALL_HOLE * item.edge_length if way.behind_small_holes else 0)
         try:
             _bridge(other, index, result, progress)
             if way.behind_small_holes and not _bridges_more(other, item):
                 continue
             _map(other, index, result, progress)
+            if not other.singularities:
+                item.other_maps.append(way._replace(without_singularities=True))
+            if way.without_singularities and other.seamless.counters["distortion_end"] > MOST_DISTORTION:
+                continue
             other.fitted = _run(other, progress, "fit", fit, other, result)
-            if better_than is not None and not _is_better(other.fitted, better_than):
-                item.other_maps.remove(way)  # it may be taken where these turn out to be at fault
+            if not takes(other.fitted):
+                # They may be taken where the region's own turn out to be at fault.
+                item.other_maps = [w for w in item.other_maps if w != way]
                 continue
             item.fitted, item.fitted_from = other.fitted, other
             item.refits, item.bisections = 0, []
@@ -224,11 +266,6 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, better_than=No
             if item.fitted_from is not other:
                 native.place_region(result.model, index, placed)
     return False
-
-
-def _is_better(fitted, than):
-    """Whether surfaces are to replace such as fold."""
-    return not fitted.folded and fitted.control_points <= than.control_points
 
 
 def _without_creases(item, result):
@@ -265,7 +302,7 @@ def _map(item, index, result, progress):
     native = load()
     options = result.options
     seed = _run(item, progress, "seamless", native.seed, item.bridged, str(options.field), item.guidance,
-                options.field_weight, item.edge_length)
+                options.field_weight, item.edge_length, item.without_singularities)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     if seed.refined:
         # The model's region gets halved edges; the field and all maps are of these.

@@ -114,6 +114,7 @@ def _nurbs_report(result, index, item, deviations):
         "rms_deviation": item.fitted.rms_deviation,
         "folds": len(item.fitted.folded),
         "bridged_holes": item.holes_bridged_to_fit,
+        "without_singularities": item.fitted_without_singularities,
         "max_deviation_at": worst_place(item),
         "face_deviations": [
             {"face": f"Face{d.face}", "max": d.max, "rms": d.rms, "at": d.where} for d in deviations

@@ -55,7 +55,7 @@ void bindSeamless(py::module_& m) {
   m.def(
       "seed",
       [](const Region& region, const std::string& follow, std::optional<FieldGuidance> guidance,
-         std::optional<double> weight, double edgeLength, const Progress& progress) {
+         std::optional<double> weight, double edgeLength, bool withoutSingularities, const Progress& progress) {
         SeedOptions options;
         options.follow = guidance             ? SeedOptions::Follow::Given
                          : follow == "smooth" ? SeedOptions::Follow::Smooth
@@ -63,10 +63,11 @@ void bindSeamless(py::module_& m) {
         options.guidance = std::move(guidance);
         options.weight = weight;
         options.edgeLength = edgeLength;
+        options.withoutSingularities = withoutSingularities;
         return seed(region, options, progress);
       },
       py::arg("region"), py::arg("follow"), py::arg("guidance"), py::arg("weight"), py::arg("edge_length"),
-      py::arg("progress"), Released(),
+      py::arg("without_singularities"), py::arg("progress"), Released(),
       "follow: 'curvature' or 'smooth', where there is no `guidance`; weight: how closely, 0 to 1, or None");
   m.def(
       "place_refined",

@@ -170,6 +170,6 @@ def test_the_report_has_its_keys(converted, name):
                 "edge_length"} == set(region["quads"])
         assert sum(region["histograms"]["edge_length"]["counts"]) > 0
         assert {"faces", "control_points", "degree", "max_deviation", "rms_deviation", "max_deviation_at", "face_deviations",
-                "folds", "bridged_holes", "max_gap", "tolerance"} == set(region["nurbs"])
+                "folds", "bridged_holes", "without_singularities", "max_gap", "tolerance"} == set(region["nurbs"])
         assert set(region["seconds"]) == {"tessellate", "field", "seamless", "partition", "quantize", "reembed",
                                           "optimize", "extract", "fit", "write"}

@@ -85,16 +85,26 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
     return singularityFreeField(region.mesh, guidance, reaches.front(), progress);
   };
   std::optional<Seed> without;
+  std::optional<Error> first;
   const auto tryWithout = [&](Effort effort) {
-    if (!without && mayDoWithout &&
-        !tryField(region, options.edgeLength, withoutSingularities, effort, budget, progress, result))
-      without = result;
+    if (!without && mayDoWithout) {
+      const auto error =
+          tryField(region, options.edgeLength, withoutSingularities, effort, budget, progress, result);
+      if (!error)
+        without = result;
+      else if (options.withoutSingularities)
+        first = error;
+    }
     return without && without->map.counters.distortionEnd <= kLittleDistortion;
   };
+  if (options.withoutSingularities) {
+    tryWithout(Effort::Full);
+    if (without) return *without;
+    throw first.value_or(stageError("field", "the region has no map without singularities", region.name));
+  }
   const bool prefersWithout = weight <= kCurvatureWeight;
   if (prefersWithout && tryWithout(Effort::Easy)) return *without;
 
-  std::optional<Error> first;
   std::optional<Seed> with;
   for (const double reach : reaches) {
     const auto field = [&] {

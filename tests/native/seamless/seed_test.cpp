@@ -314,6 +314,30 @@ TEST(Seed, countsDoNotChangeWithPlaceScaleOrNumbering) {
   }
 }
 
+TEST(Seed, aMapWithoutSingularitiesIsThereWhereItIsAskedForAndCanBe) {
+  SeedOptions options;
+  options.edgeLength = 0.3;
+  const Region deep = sample::region(sample::sheet(30, 30, sample::dome(2.4)));
+  const auto singularities = [](const Seed& s) {
+    return std::count_if(s.field.index.begin(), s.field.index.end(), [](int i) { return i != 0; });
+  };
+  EXPECT_GT(singularities(seed(deep, options, Progress())), 0);
+  options.withoutSingularities = true;
+  const Seed without = seed(deep, options, Progress());
+  check(deep, without);
+  EXPECT_EQ(singularities(without), 0);
+  EXPECT_GT(without.map.counters.distortionEnd, 4.5);
+  // Closed, or with an edge to be followed.
+  EXPECT_THROW(seed(sample::region(sample::sphere(8)), options, Progress()), Error);
+  Region aligned = deep;
+  for (const auto e : aligned.mesh.edges())
+    if (!aligned.mesh.is_boundary(e)) {
+      aligned.aligned = {e};
+      break;
+    }
+  EXPECT_THROW(seed(aligned, options, Progress()), Error);
+}
+
 TEST(Seed, smoothFieldsIgnoreCurvature) {
   const Region r = sample::region(sample::sphere(8));
   SeedOptions options;

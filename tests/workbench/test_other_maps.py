@@ -1,0 +1,81 @@
+"""Surfaces fitted over another map of a region than that of its quads."""
+import math
+import sys
+import types
+
+import pytest
+
+import trimquad
+
+
+def cap(angle):
+    """The part of a sphere of radius 10 within so many radians of its pole."""
+    import FreeCAD
+    import Part
+
+    sphere = Part.makeSphere(10, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 90 - math.degrees(angle), 90, 360)
+    return max(sphere.Faces, key=lambda face: face.Area)
+
+
+def test_a_deep_dome_is_one_surface_though_its_quads_have_irregular_vertices():
+    result = trimquad.convert(cap(2.4), trimquad.Options(quads=300, write=["quads", "nurbs", "report"]))
+    (region,) = result.regions
+    assert region.error is None and len(region.singularities) > 0
+    assert region.fitted_without_singularities and not region.fitted.folded
+    report = result.report["regions"][0]
+    assert report["nurbs"]["faces"] == 1 and report["nurbs"]["without_singularities"] is True
+    assert report["quads"]["irregular_vertices"] == len(region.singularities)
+    assert len(result.shape.Faces) == 1
+    result.shape.check(True)
+    assert result.shape.Area == pytest.approx(2 * math.pi * 100 * (1 - math.cos(2.4)), rel=2e-3)
+    points, triangles, _ = region.map
+    assert len(triangles) == region.region.triangles, "the map of the quads is that of the region itself"
+
+
+def fit_alike(monkeypatch, *fits):
+    """Let surfaces be fitted with these numbers of folds and control points, and none be trimmed."""
+    waiting = [
+        types.SimpleNamespace(folded=[(0.0, 0.0, 0.0)] * folds, control_points=control_points, samples=1000)
+        for folds, control_points in fits
+    ]
+    monkeypatch.setattr(sys.modules["trimquad.regions"], "fit", lambda *_: waiting.pop(0))
+    monkeypatch.setattr(sys.modules["trimquad.convert"], "trim", lambda *_: None)
+    return waiting
+
+
+@pytest.mark.parametrize("folds, taken", [(0, True), (1, False)])
+def test_one_surface_that_folds_is_not_taken_where_several_do_not(monkeypatch, folds, taken):
+    waiting = fit_alike(monkeypatch, (folds, 10), (0, 400))
+    (region,) = trimquad.convert(cap(2.4), trimquad.Options(quads=300)).regions
+    assert len(waiting) == taken
+    assert region.fitted_without_singularities == taken
+    assert region.fitted.control_points == (10 if taken else 400)
+
+
+def test_one_surface_over_too_distorted_a_map_is_not_looked_for(monkeypatch):
+    waiting = fit_alike(monkeypatch, (0, 400))
+    monkeypatch.setattr(sys.modules["trimquad.regions"], "MOST_DISTORTION", 4.5)
+    (region,) = trimquad.convert(cap(2.4), trimquad.Options(quads=300)).regions
+    assert waiting == [] and region.fitted_from is region
+
+
+def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tried(monkeypatch):
+    joining = sys.modules["trimquad.joining"]
+    native = joining.load()
+
+    class FaultySingles:
+        """The compiled module, but single faces are at fault."""
+
+        def __getattr__(self, name):
+            return getattr(native, name)
+
+        def face_faults(self, model):
+            return [["crosses itself"] if len(model.faces) == 1 else [] for _ in model.faces]
+
+    monkeypatch.setattr(joining, "load", FaultySingles)
+    monkeypatch.setattr(joining, "REFITS", ())
+    result = trimquad.convert(cap(2.4), trimquad.Options(quads=300))
+    (region,) = result.regions
+    assert region.error is None and not region.fitted_without_singularities
+    assert len(result.shape.Faces) > 1
+    result.shape.check(True)
