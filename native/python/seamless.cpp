@@ -55,7 +55,8 @@ void bindSeamless(py::module_& m) {
   m.def(
       "seed",
       [](const Region& region, const std::string& follow, std::optional<FieldGuidance> guidance,
-         std::optional<double> weight, double edgeLength, bool withoutSingularities, const Progress& progress) {
+         std::optional<double> weight, double edgeLength, bool withoutSingularities,
+         const Progress& progress) {
         SeedOptions options;
         options.follow = guidance             ? SeedOptions::Follow::Given
                          : follow == "smooth" ? SeedOptions::Follow::Smooth

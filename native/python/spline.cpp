@@ -47,7 +47,8 @@ void bindSpline(py::module_& m) {
       .def_property_readonly("deviations", &deviationsOf, "by chart: largest, rms, place of the largest")
       .def_property_readonly("folded", &foldedOf)
       .def_readonly("samples", &FittedSurface::samples)
-      .def_property_readonly("control_points", &controlPointsOf, "of all its surfaces, before they are trimmed")
+      .def_property_readonly("control_points", &controlPointsOf,
+                             "of all its surfaces, before they are trimmed")
       .def_readonly("rounds", &FittedSurface::rounds)
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")

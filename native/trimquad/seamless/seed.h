@@ -40,8 +40,8 @@ struct Seed {
 /// nothing is to be followed more closely than is usual for the curvature; else the map of the smoothest
 /// field. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
 /// to one that follows nothing but the aligned edges. Throws Error(Stage) of the first field where none has a
-/// map, and where the region has no map without singularities though only that is wanted: it is not of genus 0
-/// with a boundary, or is to follow edges, points or given directions.
+/// map, and where the region has no map without singularities though only that is wanted: it is not of genus
+/// 0 with a boundary, or is to follow edges, points or given directions.
 Seed seed(const Region& region, const SeedOptions& options, const Progress& progress);
 
 }  // namespace trimquad
