@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -139,7 +140,7 @@ std::vector<HalfedgeHandle> EmbeddedTMesh::halfedges(HalfArc h) const {
   const EdgePath vertices = path(h);
   std::vector<HalfedgeHandle> result;
   for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
-    result.push_back(surface.mesh.find_halfedge(vertices[k], vertices[k + 1]));
+    result.push_back(halfedgeBetween(surface.mesh, vertices[k], vertices[k + 1]));
     TRIMQUAD_ASSERT(result.back().is_valid());
   }
   return result;

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -28,7 +29,7 @@ EdgePath PathSearch::connect(PatchCorner from, PatchCorner to, int& splits) {
   }
   occupied_.grow(mesh_);
   for (std::size_t k = 0; k + 1 < path.size(); ++k)
-    TRIMQUAD_ASSERT(mesh_.find_halfedge(path[k], path[k + 1]).is_valid());
+    TRIMQUAD_ASSERT(halfedgeBetween(mesh_, path[k], path[k + 1]).is_valid());
   return path;
 }
 
