@@ -1,6 +1,7 @@
 #include "trimquad/mesh/refined_mesh.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/collapse_edge.h"
@@ -108,8 +109,10 @@ bool moveApart(const SurfaceMesh& input, RefinedMesh& refined, VertexHandle v) {
 RefinedMesh unrefined(const SurfaceMesh& input) {
   RefinedMesh refined;
   refined.mesh = input;
-  for (const auto v : input.vertices()) refined.vertexOrigin.push_back({v});
-  for (const auto f : input.faces()) refined.faceOrigin.push_back(f.idx());
+  refined.vertexOrigin.reserve(input.n_vertices());
+  for (int v = 0; v < int(input.n_vertices()); ++v) refined.vertexOrigin.push_back({VertexHandle(v)});
+  refined.faceOrigin.resize(input.n_faces());
+  std::iota(refined.faceOrigin.begin(), refined.faceOrigin.end(), 0);
   return refined;
 }
 
