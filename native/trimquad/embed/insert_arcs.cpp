@@ -80,21 +80,21 @@ Origin originOf(const Parametrization& map, const SurfacePoint& x) {
 /// Everything is kept in flat arrays: the cost is that of what the arcs cross, and of a copy of the mesh.
 class Insertion {
  public:
-  Insertion(const Parametrization& map, const TMesh& tmesh)
-      : map_(map), input_(map.mesh), tmesh_(tmesh), onEdge_(input_.n_edges(), kNone) {}
+  Insertion(const Parametrization& map, const TMesh& tmesh, RefinedMesh& surface)
+      : map_(map), input_(map.mesh), tmesh_(tmesh), surface_(surface), onEdge_(input_.n_edges(), kNone) {}
 
-  CutSurface run() && {
+  ArcPaths run() && {
     for (const auto& node : tmesh_.nodes)
       result_.node.push_back(node.place ? std::optional(vertexAt(*node.place)) : std::nullopt);
     for (const auto& arc : tmesh_.arcs) result_.arc.push_back(pathOf(arc));
     for (const auto& red : tmesh_.redSegments) result_.redSegment.push_back(pathOf(red));
     sortAlongEdges();
     cutTriangles();
-    result_.surface = unrefined(input_);
+    startFrom(input_, surface_);
     addVertices();
-    replaceTriangles(result_.surface.mesh, parts_, crossed_);
+    replaceTriangles(surface_.mesh, parts_, crossed_);
     for (std::size_t p = 1; p < parts_.size(); ++p)
-      if (parts_[p].whole == parts_[p - 1].whole) result_.surface.faceOrigin.push_back(parts_[p].whole.idx());
+      if (parts_[p].whole == parts_[p - 1].whole) surface_.faceOrigin.push_back(parts_[p].whole.idx());
     return std::move(result_);
   }
 
@@ -116,7 +116,7 @@ class Insertion {
   }
 
   void addVertices() {
-    auto& [mesh, vertexOrigin, faceOrigin] = result_.surface;
+    auto& [mesh, vertexOrigin, faceOrigin] = surface_;
     vertexOrigin.insert(vertexOrigin.end(), origins_.begin(), origins_.end());
     mesh.resize(vertexOrigin.size(), mesh.n_edges(), mesh.n_faces());
     for (std::size_t k = 0; k < places_.size(); ++k)
@@ -342,6 +342,7 @@ class Insertion {
   const Parametrization& map_;
   const SurfaceMesh& input_;
   const TMesh& tmesh_;
+  RefinedMesh& surface_;
   std::vector<Origin> origins_;   ///< of the new vertices
   std::vector<Vector3d> places_;  ///< likewise
   std::vector<int> onEdge_;       ///< by edge: its last in `crossings_`; then its first in `along_`
@@ -358,13 +359,13 @@ class Insertion {
   std::vector<Spoke> spokes_;
   std::vector<std::size_t> firstSpoke_;  ///< by vertex
   std::vector<TrianglePart> parts_;
-  CutSurface result_;
+  ArcPaths result_;
 };
 
 }  // namespace
 
-CutSurface insertArcs(const Parametrization& map, const TMesh& tmesh) {
-  return Insertion(map, tmesh).run();
+ArcPaths insertArcs(const Parametrization& map, const TMesh& tmesh, RefinedMesh& surface) {
+  return Insertion(map, tmesh, surface).run();
 }
 
 }  // namespace trimquad

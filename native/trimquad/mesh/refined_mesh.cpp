@@ -108,12 +108,17 @@ bool moveApart(const SurfaceMesh& input, RefinedMesh& refined, VertexHandle v) {
 
 RefinedMesh unrefined(const SurfaceMesh& input) {
   RefinedMesh refined;
+  startFrom(input, refined);
+  return refined;
+}
+
+void startFrom(const SurfaceMesh& input, RefinedMesh& refined) {
   refined.mesh = input;
+  refined.vertexOrigin.clear();
   refined.vertexOrigin.reserve(input.n_vertices());
   for (int v = 0; v < int(input.n_vertices()); ++v) refined.vertexOrigin.push_back({VertexHandle(v)});
   refined.faceOrigin.resize(input.n_faces());
   std::iota(refined.faceOrigin.begin(), refined.faceOrigin.end(), 0);
-  return refined;
 }
 
 Vector3d barycentric(const SurfaceMesh& input, FaceHandle f, const Origin& origin) {

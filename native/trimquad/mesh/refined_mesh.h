@@ -28,6 +28,8 @@ struct RefinedMesh {
 
 /// The input's mesh, not refined yet.
 RefinedMesh unrefined(const SurfaceMesh& input);
+/// The same in place, without a second copy of the mesh.
+void startFrom(const SurfaceMesh& input, RefinedMesh& refined);
 
 /// Barycentric coordinates of an origin in the closed input triangle `f`, of its corners from
 /// halfedge_handle(f) on.
