@@ -1,6 +1,8 @@
 """What ends up in the output folder, and that it does not depend on chance."""
 import json
 import os
+import sys
+import time
 
 import numpy
 import pytest
@@ -185,8 +187,6 @@ class _AlwaysAtFault:
 
 
 def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeypatch):
-    import sys
-
     module = sys.modules["trimquad.joining"]
     native = _AlwaysAtFault(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
@@ -255,8 +255,6 @@ def test_the_seconds_of_a_route_that_failed_count(monkeypatch):
 
 
 def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monkeypatch):
-    import sys
-
     import numpy as np
 
     n = 16
