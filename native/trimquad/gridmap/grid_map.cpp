@@ -13,7 +13,7 @@ namespace {
 
 /// Where the constructive route follows: multiply-adds for each triangle, which is less than what that route
 /// takes.
-constexpr double kBriefly = 8e4;
+constexpr double kBriefly = 4e4;
 
 /// The images of the triangles: the map itself as a target.
 MapTarget imageOf(const Parametrization& map) {
