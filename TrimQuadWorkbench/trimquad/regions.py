@@ -48,7 +48,8 @@ class RegionResult:
     """What became of one region. Stages that were not reached are None; `error` says why.
 
     name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
-    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds;
+    fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds, those of
+    attempts that failed included;
     cut_from: name of the region that it is a part of, None for a whole; cuts_left: how often it may be cut if it fails;
     holes: what became of boundary loops shorter than `fill_holes`; bridged: the region with its holes bridged, which
     field, seamless and tmesh are of (the region itself where no hole is).
@@ -288,7 +289,7 @@ def _run(item, progress, stage, function, *arguments):
         try:
             return function(*arguments, native_progress)
         finally:
-            item.seconds[stage] = time.monotonic() - started
+            item.seconds[stage] = item.seconds.get(stage, 0.0) + time.monotonic() - started
 
 
 def _bridge(item, index, result, progress):
@@ -310,7 +311,8 @@ def _map(item, index, result, progress):
         region = result.model.regions[index]
         item.bridged = region if item.bridged is item.region else whole
         item.region = item.mapped_region = region
-    item.seconds.update(field=seed.field_seconds, seamless=seed.seamless_seconds)
+    item.seconds["field"] = item.seconds.get("field", 0.0) + seed.field_seconds
+    item.seconds["seamless"] -= seed.field_seconds
     if options.wants("partition"):
         item.tmesh = _run(item, progress, "partition", native.partition, item.seamless)
     if options.wants("quantize"):

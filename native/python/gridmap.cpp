@@ -28,7 +28,8 @@ void bindGridMap(py::module_& m) {
       .def_property_readonly("arrays", [](const GridMap& map) { return arraysOf(map); })
       .def(
           "to_obj", [](const GridMap& map) { return writeObj(map); }, Released());
-  py::class_<EmbeddedTMesh>(m, "EmbeddedTMesh");
+  py::class_<EmbeddedTMesh>(m, "EmbeddedTMesh")
+      .def_property_readonly("crossings", [](const EmbeddedTMesh& e) { return e.counters.crossings; });
   m.def(
       "embed",
       [](const SeamlessMap& seamless, const TMesh& tmesh, const Quantization& quantization,

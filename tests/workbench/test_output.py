@@ -1,6 +1,8 @@
 """What ends up in the output folder, and that it does not depend on chance."""
 import json
 import os
+import sys
+import time
 
 import numpy
 import pytest
@@ -185,8 +187,6 @@ class _AlwaysAtFault:
 
 
 def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeypatch):
-    import sys
-
     module = sys.modules["trimquad.joining"]
     native = _AlwaysAtFault(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
@@ -233,9 +233,28 @@ class _NoCreases:
         return self._native.fit_surface(region, *rest)
 
 
-def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monkeypatch):
-    import sys
+class _NoDirectRoute(_NoCreases):
+    """The compiled stages, with a direct route that fails after some time."""
 
+    def grid_map(self, *arguments):
+        time.sleep(0.2)
+        raise trimquad.Error("stage", "optimize", "triangles stay turned over in the map", "region")
+
+
+def test_the_seconds_of_a_route_that_failed_count(monkeypatch):
+    module = sys.modules["trimquad.regions"]
+    native = _NoDirectRoute(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    points = [(x, y, 0.02 * x * y) for y in range(6) for x in range(6)]
+    triangles = [t for y in range(5) for x in range(5) for a in [x + 6 * y] for t in ((a, a + 1, a + 7), (a, a + 7, a + 6))]
+    result = trimquad.convert((points, triangles), trimquad.Options(edge_length=1, write=("quads",)))
+    (region,) = result.regions
+    assert region.error is None and region.embedding["route"] == "reembedded"
+    assert region.seconds["optimize"] > 0.2
+    assert region.seconds["field"] > 0 and region.seconds["seamless"] > 0
+
+
+def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monkeypatch):
     import numpy as np
 
     n = 16

@@ -8,7 +8,7 @@
 namespace trimquad {
 namespace {
 
-int snapCut(const SurfaceMesh& input, CutSurface& cut) {
+int snapCut(const SurfaceMesh& input, RefinedMesh& surface, ArcPaths& cut) {
   std::vector<VertexHandle*> nodes;
   for (auto& node : cut.node)
     if (node) nodes.push_back(&*node);
@@ -16,11 +16,12 @@ int snapCut(const SurfaceMesh& input, CutSurface& cut) {
   for (auto& path : cut.arc)
     if (!path.empty()) paths.push_back(&path);
   for (auto& path : cut.redSegment) paths.push_back(&path);
-  return snap(input, cut.surface, nodes, paths);
+  return snap(input, surface, nodes, paths);
 }
 
 /// Gives virtual nodes their vertices and virtual arcs their paths.
-void embedVirtualArcs(const SurfaceMesh& input, const TMesh& tmesh, CutSurface& cut, int& splits) {
+void embedVirtualArcs(const SurfaceMesh& input, const TMesh& tmesh, RefinedMesh& surface, ArcPaths& cut,
+                      int& splits) {
   for (std::size_t r = 0; r < tmesh.redSegments.size(); ++r) {
     const auto& arcs = tmesh.redSegments[r].virtualArcs;
     EdgePath& path = cut.redSegment[r];
@@ -29,7 +30,7 @@ void embedVirtualArcs(const SurfaceMesh& input, const TMesh& tmesh, CutSurface& 
       const NodeId n = tmesh.end(arcs[k]);
       nodes.push_back({cut.node[n.index], tmesh[n].position});
     }
-    const auto places = placeVirtualNodes(input, cut.surface, nodes, path, splits);
+    const auto places = placeVirtualNodes(input, surface, nodes, path, splits);
     std::size_t from = 0;
     for (std::size_t k = 0; k < arcs.size(); ++k) {
       const std::size_t to = k < places.size() ? places[k] : path.size() - 1;
@@ -41,8 +42,7 @@ void embedVirtualArcs(const SurfaceMesh& input, const TMesh& tmesh, CutSurface& 
   }
 }
 
-EmbeddedTMesh assembled(const TMesh& tmesh, const Quantization& quantization, CutSurface cut) {
-  EmbeddedTMesh embedded;
+void assemble(const TMesh& tmesh, const Quantization& quantization, ArcPaths cut, EmbeddedTMesh& embedded) {
   for (std::size_t n = 0; n < tmesh.nodes.size(); ++n) {
     TRIMQUAD_ASSERT(cut.node[n]);
     embedded.nodes.push_back({*cut.node[n], tmesh.nodes[n].critical, false});
@@ -57,8 +57,6 @@ EmbeddedTMesh assembled(const TMesh& tmesh, const Quantization& quantization, Cu
       for (const NodeId n : {arc.from, arc.to}) embedded.nodes[n.index].onCurve = true;
   }
   for (const auto& patch : tmesh.patches) embedded.patches.push_back({patch.sides});
-  embedded.surface = std::move(cut.surface);
-  return embedded;
 }
 
 /// Numbers without gaps.
@@ -103,22 +101,23 @@ EmbeddedTMesh embed(const Parametrization& map, const TMesh& tmesh, const Quanti
                     const Progress& progress,
                     const std::function<void(const EmbeddedTMesh&)>& afterOperation) {
   const SurfaceMesh& input = map.mesh;
-  CutSurface cut = insertArcs(map, tmesh);
-  EmbeddedTMesh::Counters counters;
-  counters.crossings = int(cut.surface.mesh.n_vertices() - input.n_vertices());
+  EmbeddedTMesh embedded;
+  RefinedMesh& surface = embedded.surface;
+  EmbeddedTMesh::Counters& counters = embedded.counters;
+  ArcPaths cut = insertArcs(map, tmesh, surface);
+  counters.crossings = int(surface.mesh.n_vertices() - input.n_vertices());
   progress.report(0.3);
-  counters.snapped = snapCut(input, cut);
+  counters.snapped = snapCut(input, surface, cut);
   progress.report(0.5);
-  embedVirtualArcs(input, tmesh, cut, counters.splits);
-  EmbeddedTMesh embedded = assembled(tmesh, quantization, std::move(cut));
-  embedded.counters = counters;
+  embedVirtualArcs(input, tmesh, surface, cut, counters.splits);
+  assemble(tmesh, quantization, std::move(cut), embedded);
   if (afterOperation) afterOperation(embedded);
   collapseZeros(input, embedded, progress, afterOperation);
   dropRemoved(embedded);
   progress.report(0.8);
   snapEmbedded(input, embedded);
-  relax(input, embedded.surface);
-  embedded.counters.inserted = int(embedded.surface.mesh.n_vertices() - input.n_vertices());
+  relax(input, surface);
+  counters.inserted = int(surface.mesh.n_vertices() - input.n_vertices());
   verify(embedded);
   return embedded;
 }

@@ -1,10 +1,9 @@
 #include "trimquad/embed/embedded_tmesh.h"
 
 #include <algorithm>
-#include <iterator>
-#include <optional>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -21,7 +20,9 @@ class Occupation {
       if (!node.removed) occupy(node.vertex);
     for (std::size_t a = 0; a < embedded.arcs.size(); ++a)
       if (!embedded.arcs[a].removed) add(ArcId{int(a)});
-    for (const auto e : mesh_.edges()) TRIMQUAD_ASSERT(edge_[e.idx()] || !mesh_.is_boundary(e));
+    for (int h = 0; h < int(mesh_.n_halfedges()); ++h)
+      if (!edge_[h / 2] && mesh_.is_boundary(HalfedgeHandle(h)))
+        TRIMQUAD_ASSERT(mesh_.status(EdgeHandle(h / 2)).deleted());
   }
 
   bool operator[](EdgeHandle e) const { return edge_[e.idx()]; }
@@ -58,7 +59,7 @@ class PatchWalk {
         mesh_(embedded.surface.mesh),
         occupied_(occupied),
         covered_(mesh_.n_faces(), false),
-        counted_(mesh_.n_vertices()) {}
+        counted_(mesh_.n_vertices(), 0) {}
 
   void verify(PatchId id) {
     const auto rim = rimOf(id);
@@ -67,22 +68,27 @@ class PatchWalk {
     reach(mesh_.face_handle(rim.front()));
     int corners = 0, onRim = 0;
     std::size_t innerSides = 0;
-    for (std::size_t k = 0; k < inside_.size(); ++k)
-      for (const auto h : mesh_.fh_range(inside_[k])) {
-        corners += isFirstMeeting(mesh_.to_vertex_handle(h), 2 * id.index);
+    const int round = 2 * id.index + 1;
+    for (std::size_t k = 0; k < inside_.size(); ++k) {
+      HalfedgeHandle h = mesh_.halfedge_handle(inside_[k]);
+      for (int side = 0; side < 3; ++side, h = mesh_.next_halfedge_handle(h)) {
+        corners += isFirstMeeting(mesh_.to_vertex_handle(h), round);
         if (occupied_[mesh_.edge_handle(h)]) continue;
         ++innerSides;
-        reach(mesh_.opposite_face_handle(h));
+        reach(mesh_.face_handle(mesh_.opposite_halfedge_handle(h)));
       }
+    }
     // A disk: its open part has the characteristic 1, and its loop is all there is of its rim.
     TRIMQUAD_ASSERT(3 * inside_.size() == innerSides + rim.size());
-    for (const auto h : rim) onRim += isFirstMeeting(mesh_.to_vertex_handle(h), 2 * id.index + 1);
+    for (const auto h : rim) onRim += isFirstMeeting(mesh_.to_vertex_handle(h), round + 1);
     TRIMQUAD_ASSERT(corners - onRim - int(innerSides / 2) + int(inside_.size()) == 1);
     triangles_ += inside_.size();
   }
 
   bool coversAll() const {
-    return std::ptrdiff_t(triangles_) == std::distance(mesh_.faces_sbegin(), mesh_.faces_end());
+    std::size_t count = triangles_;
+    for (int f = 0; f < int(mesh_.n_faces()); ++f) count += mesh_.status(FaceHandle(f)).deleted();
+    return count == mesh_.n_faces();
   }
 
  private:
@@ -122,7 +128,7 @@ class PatchWalk {
   const SurfaceMesh& mesh_;
   const Occupation& occupied_;
   std::vector<bool> covered_;
-  std::vector<std::optional<int>> counted_;  ///< by vertex: in which round last
+  std::vector<int> counted_;  ///< by vertex: in which round last, from 1
   std::vector<FaceHandle> inside_;
   std::size_t triangles_ = 0;
 };
@@ -139,7 +145,7 @@ std::vector<HalfedgeHandle> EmbeddedTMesh::halfedges(HalfArc h) const {
   const EdgePath vertices = path(h);
   std::vector<HalfedgeHandle> result;
   for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
-    result.push_back(surface.mesh.find_halfedge(vertices[k], vertices[k + 1]));
+    result.push_back(halfedgeBetween(surface.mesh, vertices[k], vertices[k + 1]));
     TRIMQUAD_ASSERT(result.back().is_valid());
   }
   return result;

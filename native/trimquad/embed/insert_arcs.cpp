@@ -1,9 +1,10 @@
 #include "trimquad/embed/insert_arcs.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <map>
-#include <set>
-#include <tuple>
+#include <span>
 
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/replace_triangles.h"
@@ -25,17 +26,33 @@ struct Line {
 };
 
 struct Segment {
+  FaceHandle triangle;
   VertexHandle from, to;
   int direction;  ///< quarter turns from +u
   Line line;
 };
 
-/// A convex polygon, perhaps with straight angles.
-struct Cell {
-  std::vector<VertexHandle> vertex;
-  std::vector<Line> line;  ///< of the side from a vertex to the next
-  int cuts = 0;
+/// A corner of a convex polygon, which may have straight angles, and the side from it to the next.
+struct CellCorner {
+  VertexHandle vertex;
+  Line side;
 };
+
+/// What leaves a vertex inside a triangle and along its outline.
+struct Spoke {
+  int at, to;  ///< in `vertices_`
+  int rank;    ///< counter-clockwise around the vertex
+  Line line;
+  std::size_t twin = 0;
+  bool walked = false;  ///< by the cell on its left
+};
+
+/// Quarter turns from +u to the axis that is last met before the direction x.
+int quadrantOf(FixedVector x) {
+  if (x.u > 0 && x.v >= 0) return 0;
+  if (x.v > 0) return 1;
+  return x.u < 0 ? 2 : 3;
+}
 
 Origin originOf(const Parametrization& map, const SurfacePoint& x) {
   const auto& mesh = map.mesh;
@@ -60,56 +77,85 @@ Origin originOf(const Parametrization& map, const SurfacePoint& x) {
   return {f, weights / weights.sum()};
 }
 
+/// Everything is kept in flat arrays: the cost is that of what the arcs cross, and of a copy of the mesh.
 class Insertion {
  public:
-  Insertion(const Parametrization& map, const TMesh& tmesh)
-      : map_(map), input_(map.mesh), tmesh_(tmesh), onEdge_(input_.n_edges()), segments_(input_.n_faces()) {
-    result_.surface = unrefined(input_);
-  }
+  Insertion(const Parametrization& map, const TMesh& tmesh, RefinedMesh& surface)
+      : map_(map), input_(map.mesh), tmesh_(tmesh), surface_(surface), onEdge_(input_.n_edges(), kNone) {}
 
-  CutSurface run() && {
+  ArcPaths run() && {
     for (const auto& node : tmesh_.nodes)
       result_.node.push_back(node.place ? std::optional(vertexAt(*node.place)) : std::nullopt);
     for (const auto& arc : tmesh_.arcs) result_.arc.push_back(pathOf(arc));
-    std::sort(crossed_.begin(), crossed_.end());
-    for (const auto e : crossed_) sortAlong(e);
     for (const auto& red : tmesh_.redSegments) result_.redSegment.push_back(pathOf(red));
-    for (const auto f : cutTriangles())
-      for (const Cell& cell : cellsOf(f)) triangulate(cell, f);
-    replaceTriangles(result_.surface.mesh, parts_, crossed_);
+    sortAlongEdges();
+    cutTriangles();
+    startFrom(input_, surface_);
+    addVertices();
+    replaceTriangles(surface_.mesh, parts_, crossed_);
     for (std::size_t p = 1; p < parts_.size(); ++p)
-      if (parts_[p].whole == parts_[p - 1].whole) result_.surface.faceOrigin.push_back(parts_[p].whole.idx());
+      if (parts_[p].whole == parts_[p - 1].whole) surface_.faceOrigin.push_back(parts_[p].whole.idx());
     return std::move(result_);
   }
 
  private:
-  VertexHandle addVertex(const Origin& origin) {
-    result_.surface.vertexOrigin.push_back(origin);
-    return result_.surface.mesh.add_vertex(placeInSpace(input_, origin));
+  static constexpr int kNone = -1;
+
+  /// A vertex inside an edge.
+  struct Crossing {
+    SurfacePoint point;
+    VertexHandle vertex;
+    int before;  ///< the one found on the edge before it, in `crossings_`, if any
+  };
+
+  VertexHandle addVertex(const SurfacePoint& x) {
+    const VertexHandle v(int(input_.n_vertices() + origins_.size()));
+    origins_.push_back(originOf(map_, x));
+    places_.push_back(placeInSpace(input_, origins_.back()));
+    return v;
+  }
+
+  void addVertices() {
+    auto& [mesh, vertexOrigin, faceOrigin] = surface_;
+    vertexOrigin.insert(vertexOrigin.end(), origins_.begin(), origins_.end());
+    mesh.resize(vertexOrigin.size(), mesh.n_edges(), mesh.n_faces());
+    for (std::size_t k = 0; k < places_.size(); ++k)
+      mesh.set_point(VertexHandle(int(input_.n_vertices() + k)), places_[k]);
+  }
+
+  const Vector3d& place(VertexHandle v) const {
+    const std::size_t i = std::size_t(v.idx()), n = input_.n_vertices();
+    return i < n ? input_.point(v) : places_[i - n];
   }
 
   VertexHandle vertexAt(const SurfacePoint& x) {
     if (const auto* v = std::get_if<VertexHandle>(&x.element)) return *v;
-    const auto found = vertexOf_.find(x);
-    if (found != vertexOf_.end()) return found->second;
-    const VertexHandle v = addVertex(originOf(map_, x));
-    vertexOf_[x] = v;
-    if (const auto* e = std::get_if<EdgeHandle>(&x.element)) {
-      if (onEdge_[e->idx()].empty()) crossed_.push_back(*e);
-      onEdge_[e->idx()].push_back({x, v});
-    }
-    return v;
+    if (const auto* e = std::get_if<EdgeHandle>(&x.element)) return vertexOnEdge(*e, x);
+    const auto [found, isNew] = inTriangle_.try_emplace(x);
+    if (isNew) found->second = addVertex(x);
+    return found->second;
+  }
+
+  VertexHandle vertexOnEdge(EdgeHandle e, const SurfacePoint& x) {
+    int& last = onEdge_[e.idx()];
+    for (int k = last; k != kNone; k = crossings_[k].before)
+      if (crossings_[k].point == x) return crossings_[k].vertex;
+    if (last == kNone) crossed_.push_back(e);
+    crossings_.push_back({x, addVertex(x), last});
+    last = int(crossings_.size()) - 1;
+    return crossings_.back().vertex;
   }
 
   EdgePath pathOf(const TMesh::Arc& arc) {
     EdgePath path;
+    path.reserve(arc.legs.size() + 1);
     for (const auto& leg : arc.legs) {
       if (path.empty()) path.push_back(vertexAt(leg.from));
       path.push_back(vertexAt(leg.to));
       if (leg.alongEdge) continue;
       const Line line{leg.direction % 2 == 0 ? Line::Kind::V : Line::Kind::U, leg.constant};
-      segments_[input_.face_handle(leg.side).idx()].push_back(
-          {path[path.size() - 2], path.back(), leg.direction, line});
+      segments_.push_back(
+          {input_.face_handle(leg.side), path[path.size() - 2], path.back(), leg.direction, line});
     }
     return path;
   }
@@ -122,166 +168,204 @@ class Insertion {
     return path;
   }
 
-  /// In the direction of the edge's halfedge 0.
-  void sortAlong(EdgeHandle e) {
-    auto& points = onEdge_[e.idx()];
-    const HalfedgeHandle side = chartSide(input_, e);
-    std::sort(points.begin(), points.end(),
-              [&](const auto& a, const auto& b) { return compareAlong(map_, side, a.first, b.first) < 0; });
-    if (side != input_.halfedge_handle(e, 0)) std::reverse(points.begin(), points.end());
+  /// The vertices on each edge in the direction of its halfedge 0; from now on `onEdge_` says where they
+  /// begin in `along_`.
+  void sortAlongEdges() {
+    std::sort(crossed_.begin(), crossed_.end());
+    std::vector<int> points;
+    for (const auto e : crossed_) {
+      points.clear();
+      for (int k = onEdge_[e.idx()]; k != kNone; k = crossings_[k].before) points.push_back(k);
+      const HalfedgeHandle side = chartSide(input_, e);
+      std::sort(points.begin(), points.end(), [&](int a, int b) {
+        return compareAlong(map_, side, crossings_[a].point, crossings_[b].point) < 0;
+      });
+      if (side != input_.halfedge_handle(e, 0)) std::reverse(points.begin(), points.end());
+      onEdge_[e.idx()] = int(along_.size());
+      for (const int k : points) along_.push_back(crossings_[k].vertex);
+      along_.push_back(VertexHandle());
+    }
   }
 
   /// Those that an arc passes through or has a vertex on, ascending.
-  std::vector<FaceHandle> cutTriangles() const {
-    std::vector<FaceHandle> triangles;
-    for (const auto f : input_.faces())
-      if (!segments_[f.idx()].empty()) triangles.push_back(f);
+  void cutTriangles() {
+    std::stable_sort(segments_.begin(), segments_.end(),
+                     [](const Segment& a, const Segment& b) { return a.triangle < b.triangle; });
+    std::vector<bool> isCut(input_.n_faces(), false);
+    for (const Segment& s : segments_) isCut[s.triangle.idx()] = true;
     for (const auto e : crossed_)
       for (const int k : {0, 1})
         if (const auto f = input_.face_handle(input_.halfedge_handle(e, k)); f.is_valid())
-          triangles.push_back(f);
-    std::sort(triangles.begin(), triangles.end());
-    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-    return triangles;
-  }
-
-  /// The triangle's outline with all points on it.
-  Cell outline(FaceHandle f) const {
-    Cell cell;
-    Quanta side = 0;
-    for (const auto h : input_.fh_range(f)) {
-      cell.vertex.push_back(input_.from_vertex_handle(h));
-      cell.line.push_back({Line::Kind::Side, side});
-      auto points = onEdge_[input_.edge_handle(h).idx()];
-      if (input_.halfedge_handle(input_.edge_handle(h), 0) != h) std::reverse(points.begin(), points.end());
-      for (const auto& [x, v] : points) {
-        cell.vertex.push_back(v);
-        cell.line.push_back({Line::Kind::Side, side});
-      }
-      ++side;
+          isCut[f.idx()] = true;
+    std::size_t first = 0, end = 0;
+    for (int f = 0; f < int(isCut.size()); ++f) {
+      if (!isCut[f]) continue;
+      for (first = end; end < segments_.size() && segments_[end].triangle.idx() == f;) ++end;
+      cut(FaceHandle(f), {segments_.data() + first, end - first});
     }
-    return cell;
   }
 
-  struct Spoke {
-    VertexHandle to;
-    Line line;
-    int direction = 0;
-  };
-
-  /// What the segments cut the triangle into. Around each vertex the spokes stand counter-clockwise; those of
-  /// a vertex on the outline begin with the way on along it, and end with the way back.
-  std::vector<Cell> cellsOf(FaceHandle f) const {
-    const Cell whole = outline(f);
-    if (segments_[f.idx()].empty()) return {whole};
-    std::map<VertexHandle, std::vector<Spoke>> spokes;
-    for (const Segment& s : segments_[f.idx()]) {
-      spokes[s.from].push_back({s.to, s.line, s.direction});
-      spokes[s.to].push_back({s.from, s.line, (s.direction + 2) & 3});
+  void cut(FaceHandle f, std::span<const Segment> segments) {
+    findOutline(f);
+    if (segments.empty()) return triangulate(f, 0, 0);
+    outline_.swap(cells_);
+    addSpokes(f, segments);
+    for (std::size_t first = 0; first < spokes_.size(); ++first) {
+      if (spokes_[first].walked) continue;
+      walk(first);
+      triangulate(f, 0, 0);
     }
-    for (auto& [v, around] : spokes)
-      std::sort(around.begin(), around.end(),
-                [](const Spoke& a, const Spoke& b) { return a.direction < b.direction; });
-    const std::size_t n = whole.vertex.size();
-    std::vector<FixedVector> sides;
-    for (const auto h : input_.fh_range(f)) sides.push_back(map_.to(h) - map_.from(h));
-    for (std::size_t k = 0; k < n; ++k) {
-      auto& around = spokes[whole.vertex[k]];
-      // All inner spokes lie within 180 degrees to the left of the side: start with the first there.
-      const FixedVector side = sides[whole.line[k].number];
-      std::sort(around.begin(), around.end(), [&](const Spoke& a, const Spoke& b) {
-        TRIMQUAD_ASSERT(sign(cross(side, rotated({1, 0}, a.direction))) > 0);
-        return a.direction != b.direction &&
-               sign(cross(rotated({1, 0}, a.direction), rotated({1, 0}, b.direction))) > 0;
-      });
-      const std::size_t last = (k + n - 1) % n;
-      around.insert(around.begin(), {whole.vertex[(k + 1) % n], whole.line[k]});
-      around.push_back({whole.vertex[last], whole.line[last]});
+  }
+
+  /// The triangle's outline with all points on it becomes the cell.
+  void findOutline(FaceHandle f) {
+    cells_.clear();
+    HalfedgeHandle h = input_.halfedge_handle(f);
+    for (Quanta side = 0; side < 3; ++side, h = input_.next_halfedge_handle(h)) {
+      cells_.push_back({input_.from_vertex_handle(h), {Line::Kind::Side, side}});
+      const EdgeHandle e = input_.edge_handle(h);
+      if (onEdge_[e.idx()] == kNone) continue;
+      const std::size_t first = cells_.size();
+      for (int k = onEdge_[e.idx()]; along_[k].is_valid(); ++k)
+        cells_.push_back({along_[k], {Line::Kind::Side, side}});
+      if (input_.halfedge_handle(e, 0) != h) std::reverse(cells_.begin() + long(first), cells_.end());
     }
-    return cellsBetween(spokes, whole);
   }
 
-  static std::vector<Cell> cellsBetween(const std::map<VertexHandle, std::vector<Spoke>>& spokes,
-                                        const Cell& whole) {
-    std::set<std::pair<VertexHandle, VertexHandle>> walked;
-    for (std::size_t k = 0; k < whole.vertex.size(); ++k)  // the outside is no cell
-      walked.insert({whole.vertex[(k + 1) % whole.vertex.size()], whole.vertex[k]});
-    std::vector<Cell> cells;
-    for (const auto& [start, around] : spokes)
-      for (const Spoke& first : around) {
-        if (walked.contains({start, first.to})) continue;
-        Cell cell;
-        VertexHandle v = start;
-        const Spoke* spoke = &first;
-        while (walked.insert({v, spoke->to}).second) {
-          cell.vertex.push_back(v);
-          cell.line.push_back(spoke->line);
-          const auto& there = spokes.at(spoke->to);
-          std::size_t back = 0;
-          while (there[back].to != v) ++back;
-          v = spoke->to;
-          spoke = &there[(back + there.size() - 1) % there.size()];
-        }
-        TRIMQUAD_ASSERT(v == start && cell.vertex.size() >= 3);
-        cells.push_back(std::move(cell));
-      }
-    return cells;
+  int numberOf(VertexHandle v) const {
+    return int(std::lower_bound(vertices_.begin(), vertices_.end(), v) - vertices_.begin());
   }
 
-  void triangulate(const Cell& cell, FaceHandle f) {
-    const std::size_t n = cell.vertex.size();
+  /// The segments and the sides of the outline, by vertex and counter-clockwise; around a vertex of the
+  /// outline they begin with the way on along it, and end with the way back.
+  void addSpokes(FaceHandle f, std::span<const Segment> segments) {
+    constexpr int kBack = 4;
+    vertices_.clear();
+    for (const auto& corner : outline_) vertices_.push_back(corner.vertex);
+    for (const Segment& s : segments) vertices_.insert(vertices_.end(), {s.from, s.to});
+    std::sort(vertices_.begin(), vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    std::array<FixedVector, 3> sides;
+    HalfedgeHandle h = input_.halfedge_handle(f);
+    for (int k = 0; k < 3; ++k, h = input_.next_halfedge_handle(h)) sides[k] = map_.to(h) - map_.from(h);
+    onSide_.assign(vertices_.size(), kNone);
+    spokes_.clear();
+    for (std::size_t k = 0; k < outline_.size(); ++k) {
+      const auto& [vertex, side] = outline_[k];
+      const int here = numberOf(vertex), next = numberOf(outline_[(k + 1) % outline_.size()].vertex);
+      onSide_[here] = int(side.number);
+      spokes_.push_back({here, next, 0, side});
+      spokes_.push_back({next, here, kBack, side, 0, true});  // the outside is no cell
+    }
+    const auto rank = [&](int at, int direction) {
+      if (onSide_[at] == kNone) return direction;
+      // All inner spokes lie within 180 degrees to the left of the side.
+      const FixedVector side = sides[onSide_[at]];
+      TRIMQUAD_ASSERT(sign(cross(side, rotated({1, 0}, direction))) > 0);
+      return (direction - quadrantOf(side)) & 3;
+    };
+    for (const Segment& s : segments) {
+      const int from = numberOf(s.from), to = numberOf(s.to);
+      spokes_.push_back({from, to, rank(from, s.direction), s.line});
+      spokes_.push_back({to, from, rank(to, (s.direction + 2) & 3), s.line});
+    }
+    std::sort(spokes_.begin(), spokes_.end(),
+              [](const Spoke& a, const Spoke& b) { return a.at != b.at ? a.at < b.at : a.rank < b.rank; });
+    findTwins();
+  }
+
+  void findTwins() {
+    firstSpoke_.assign(vertices_.size() + 1, spokes_.size());
+    for (std::size_t k = spokes_.size(); k-- > 0;) firstSpoke_[spokes_[k].at] = k;
+    for (std::size_t k = 0; k < spokes_.size(); ++k) {
+      std::size_t twin = firstSpoke_[spokes_[k].to];
+      while (spokes_[twin].to != spokes_[k].at) ++twin;
+      spokes_[k].twin = twin;
+    }
+  }
+
+  /// Around what lies to the left of a spoke, which becomes the cell.
+  void walk(std::size_t first) {
+    cells_.clear();
+    std::size_t k = first;
+    for (; !spokes_[k].walked; k = clockwise(spokes_[k].twin)) {
+      spokes_[k].walked = true;
+      cells_.push_back({vertices_[spokes_[k].at], spokes_[k].line});
+    }
+    TRIMQUAD_ASSERT(k == first && cells_.size() >= 3);
+  }
+
+  /// The next spoke of the same vertex.
+  std::size_t clockwise(std::size_t k) const {
+    const int at = spokes_[k].at;
+    return (k == firstSpoke_[at] ? firstSpoke_[at + 1] : k) - 1;
+  }
+
+  /// The cell from `begin` to the end of `cells_`, along the shortest diagonals that do not run along a side;
+  /// takes it from `cells_`. \param cuts  diagonals that bound it
+  void triangulate(FaceHandle f, std::size_t begin, int cuts) {
+    const std::size_t n = cells_.size() - begin;
     if (n == 3) {
-      parts_.push_back({f, {cell.vertex[0], cell.vertex[1], cell.vertex[2]}});
+      parts_.push_back({f, {cells_[begin].vertex, cells_[begin + 1].vertex, cells_[begin + 2].vertex}});
+      cells_.resize(begin);
       return;
     }
-    // Cut along the shortest diagonal that does not run along a side.
-    std::optional<std::tuple<double, std::size_t, std::size_t>> best;
+    const auto [i, j] = shortestDiagonal(begin);
+    const Line diagonal{Line::Kind::Cut, cuts};
+    // What is on the left of the diagonal goes to the end, what is on the right stays.
+    for (std::size_t k = i; k < j; ++k) cells_.push_back(CellCorner(cells_[begin + k]));
+    cells_.push_back({cells_[begin + j].vertex, diagonal});
+    cells_[begin + i].side = diagonal;
+    cells_.erase(cells_.begin() + long(begin + i) + 1, cells_.begin() + long(begin + j));
+    triangulate(f, begin + n - (j - i - 1), cuts + 1);
+    triangulate(f, begin, cuts + 1);
+  }
+
+  /// Positions of its ends.
+  std::pair<std::size_t, std::size_t> shortestDiagonal(std::size_t begin) const {
+    const CellCorner* cell = cells_.data() + begin;
+    const std::size_t n = cells_.size() - begin;
+    std::pair<std::size_t, std::size_t> best{0, 0};
+    double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = i + 2; j < n; ++j) {
-        const Line &a = cell.line[i], &b = cell.line[(i + n - 1) % n], &c = cell.line[j],
-                   &d = cell.line[j - 1];
+        const Line &a = cell[i].side, &b = cell[(i + n - 1) % n].side, &c = cell[j].side,
+                   &d = cell[j - 1].side;
         if (a == c || a == d || b == c || b == d) continue;
-        const auto& mesh = result_.surface.mesh;
-        const double length = (mesh.point(cell.vertex[i]) - mesh.point(cell.vertex[j])).squaredNorm();
-        if (!best || length < std::get<0>(*best)) best = {length, i, j};
+        const double length = (place(cell[i].vertex) - place(cell[j].vertex)).squaredNorm();
+        if (length < least) least = length, best = {i, j};
       }
-    TRIMQUAD_ASSERT(best);
-    const auto [length, i, j] = *best;
-    const Line diagonal{Line::Kind::Cut, cell.cuts};
-    Cell left, right;
-    left.cuts = right.cuts = cell.cuts + 1;
-    for (std::size_t k = 0; k < n; ++k) {
-      Cell& part = i <= k && k < j ? left : right;
-      part.vertex.push_back(cell.vertex[k]);
-      part.line.push_back(cell.line[k]);
-      if (k == i) {
-        right.vertex.push_back(cell.vertex[i]);
-        right.line.push_back(diagonal);
-      }
-      if (k + 1 == j) {
-        left.vertex.push_back(cell.vertex[j]);
-        left.line.push_back(diagonal);
-      }
-    }
-    triangulate(left, f);
-    triangulate(right, f);
+    TRIMQUAD_ASSERT(best.second > 0);
+    return best;
   }
 
   const Parametrization& map_;
   const SurfaceMesh& input_;
   const TMesh& tmesh_;
-  std::vector<std::vector<std::pair<SurfacePoint, VertexHandle>>> onEdge_;  ///< by edge
-  std::vector<std::vector<Segment>> segments_;                              ///< by face
-  std::map<SurfacePoint, VertexHandle> vertexOf_;
+  RefinedMesh& surface_;
+  std::vector<Origin> origins_;   ///< of the new vertices
+  std::vector<Vector3d> places_;  ///< likewise
+  std::vector<int> onEdge_;       ///< by edge: its last in `crossings_`; then its first in `along_`
+  std::vector<Crossing> crossings_;
+  std::vector<VertexHandle> along_;  ///< those on each edge, followed by an invalid one
+  std::map<SurfacePoint, VertexHandle> inTriangle_;
   std::vector<EdgeHandle> crossed_;
+  std::vector<Segment> segments_;  ///< through triangles
+  std::vector<CellCorner> cells_;  ///< being triangulated, the next one last
+  // Of the triangle that is being cut:
+  std::vector<CellCorner> outline_;
+  std::vector<VertexHandle> vertices_;
+  std::vector<int> onSide_;  ///< by vertex, if on the outline
+  std::vector<Spoke> spokes_;
+  std::vector<std::size_t> firstSpoke_;  ///< by vertex
   std::vector<TrianglePart> parts_;
-  CutSurface result_;
+  ArcPaths result_;
 };
 
 }  // namespace
 
-CutSurface insertArcs(const Parametrization& map, const TMesh& tmesh) {
-  return Insertion(map, tmesh).run();
+ArcPaths insertArcs(const Parametrization& map, const TMesh& tmesh, RefinedMesh& surface) {
+  return Insertion(map, tmesh, surface).run();
 }
 
 }  // namespace trimquad

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -28,21 +29,21 @@ EdgePath PathSearch::connect(PatchCorner from, PatchCorner to, int& splits) {
   }
   occupied_.grow(mesh_);
   for (std::size_t k = 0; k + 1 < path.size(); ++k)
-    TRIMQUAD_ASSERT(mesh_.find_halfedge(path[k], path[k + 1]).is_valid());
+    TRIMQUAD_ASSERT(halfedgeBetween(mesh_, path[k], path[k + 1]).is_valid());
   return path;
 }
 
 void PathSearch::start(PatchCorner from, PatchCorner to) {
-  ++search_;
   from_ = mesh_.from_vertex_handle(from.out);
   to_ = mesh_.from_vertex_handle(to.out);
   goal_ = mesh_.point(to_);
   fromSector_ = sector(from);
   toSector_ = sector(to);
   waiting_.clear();
-  reached_[Stop::Vertex].resize(mesh_.n_vertices());
-  reached_[Stop::Side].resize(mesh_.n_halfedges());
-  reached_[Stop::Triangle].resize(mesh_.n_faces());
+  reached_.clear();
+  numbers_[Stop::Vertex].resize(mesh_.n_vertices());
+  numbers_[Stop::Side].resize(mesh_.n_halfedges());
+  numbers_[Stop::Triangle].resize(mesh_.n_faces());
 }
 
 /// The halfedges that leave the corner's vertex, one for each of the patch's triangles there,
@@ -79,7 +80,7 @@ std::vector<PathSearch::Stop> PathSearch::stops() {
     std::pop_heap(waiting_.begin(), waiting_.end(), std::greater<>());
     const auto [estimate, distance, stop] = waiting_.back();
     waiting_.pop_back();
-    if (distance > reached_[stop.kind][stop.index].distance) continue;
+    if (distance > reached(stop)->distance) continue;
     if (stop == stopAt(to_)) return way();
     expand(stop, distance);
   }
@@ -104,9 +105,13 @@ void PathSearch::relax(std::optional<Stop> before, double distance, const Eigen:
   const Eigen::Vector3d there = place(next);
   double step = (here - there).norm();
   if (next.kind != Stop::Vertex) step *= 1 + kSplitCost;
-  Reached& reached = reached_[next.kind][next.index];
-  if (reached.search == search_ && reached.distance <= distance + step) return;
-  reached = {distance + step, before, search_};
+  if (Reached* known = reached(next)) {
+    if (known->distance <= distance + step) return;
+    *known = {next, distance + step, before};
+  } else {
+    numbers_[next.kind][std::size_t(next.index)] = int(reached_.size());
+    reached_.push_back({next, distance + step, before});
+  }
   waiting_.emplace_back(distance + step + (there - goal_).norm(), distance + step, next);
   std::push_heap(waiting_.begin(), waiting_.end(), std::greater<>());
 }
@@ -152,10 +157,15 @@ bool PathSearch::touches(const Stop& stop, HalfedgeHandle h) const {
   return mesh_.face_handle(h).idx() == stop.index;
 }
 
-std::vector<PathSearch::Stop> PathSearch::way() const {
+/// What is known of the stop, if it was reached. (Numbers of earlier searches do not match.)
+PathSearch::Reached* PathSearch::reached(const Stop& stop) {
+  const auto number = std::size_t(numbers_[stop.kind][std::size_t(stop.index)]);
+  return number < reached_.size() && reached_[number].stop == stop ? &reached_[number] : nullptr;
+}
+
+std::vector<PathSearch::Stop> PathSearch::way() {
   std::vector<Stop> stops;
-  for (std::optional<Stop> at = stopAt(to_); at; at = reached_[at->kind][at->index].before)
-    stops.push_back(*at);
+  for (std::optional<Stop> at = stopAt(to_); at; at = reached(*at)->before) stops.push_back(*at);
   stops.push_back(stopAt(from_));
   std::reverse(stops.begin(), stops.end());
   return stops;

@@ -45,9 +45,9 @@ class PathSearch {
     friend auto operator<=>(const Stop&, const Stop&) = default;
   };
   struct Reached {
+    Stop stop;
     double distance;
     std::optional<Stop> before;
-    int search = 0;  ///< in which one
   };
   /// Least possible length of a way through the stop, its distance from the start, the stop (A*).
   using Waiting = std::tuple<double, double, Stop>;
@@ -65,18 +65,20 @@ class PathSearch {
   void offer(std::optional<Stop> before, double distance, const Eigen::Vector3d& here, HalfedgeHandle h);
   void expand(const Stop& stop, double distance);
   bool touches(const Stop& stop, HalfedgeHandle h) const;
-  std::vector<Stop> way() const;
+  Reached* reached(const Stop& stop);
+  std::vector<Stop> way();
 
   const SurfaceMesh& input_;
   RefinedMesh& refined_;
   const SurfaceMesh& mesh_;
   Occupied& occupied_;
-  int search_ = 0;
   VertexHandle from_, to_;
   Eigen::Vector3d goal_;
   std::vector<HalfedgeHandle> fromSector_, toSector_;
-  std::array<std::vector<Reached>, 3> reached_;  ///< by kind and index
-  std::vector<Waiting> waiting_;                 ///< a heap
+  std::vector<Reached> reached_;  ///< in this search
+  std::array<std::vector<int>, 3>
+      numbers_;                   ///< by kind and index: where in `reached_`, if it is there at all
+  std::vector<Waiting> waiting_;  ///< a heap
 };
 
 }  // namespace trimquad

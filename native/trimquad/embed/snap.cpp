@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -42,16 +43,16 @@ class Snapping {
     int count = 0;
     std::vector<VertexHandle> next;
     for (std::size_t i = input_.n_vertices(); i < mesh_.n_vertices(); ++i)
-      if (!mesh_.status(VertexHandle(int(i))).deleted()) next.push_back(VertexHandle(int(i)));
+      if (!isGone(VertexHandle(int(i)))) next.push_back(VertexHandle(int(i)));
     while (!next.empty()) {
       for (const VertexHandle v : next) waiting_[v.idx()] = true;
       changed_.clear();
       for (const VertexHandle v : next) {
         waiting_[v.idx()] = false;
-        if (!mesh_.status(v).deleted() && collapseFrom(v)) ++count;
+        if (!isGone(v) && collapseFrom(v)) ++count;
       }
       next.swap(changed_);
-      std::erase_if(next, [&](VertexHandle v) { return mesh_.status(v).deleted(); });
+      std::erase_if(next, [&](VertexHandle v) { return isGone(v); });
       std::sort(next.begin(), next.end());
       next.erase(std::unique(next.begin(), next.end()), next.end());
     }
@@ -67,8 +68,10 @@ class Snapping {
     bool isFree() const { return !node && !inside; }
   };
 
+  bool isGone(VertexHandle v) const { return mesh_.is_isolated(v); }
+
   EdgeHandle edgeBetween(VertexHandle a, VertexHandle b) const {
-    const HalfedgeHandle h = mesh_.find_halfedge(a, b);
+    const HalfedgeHandle h = halfedgeBetween(mesh_, a, b);
     TRIMQUAD_ASSERT(h.is_valid());
     return mesh_.edge_handle(h);
   }
@@ -169,7 +172,7 @@ class Snapping {
       apex[k] = mesh_.to_vertex_handle(mesh_.next_halfedge_handle(side));
       taken[k] = isOnPath(mesh_.next_halfedge_handle(side)) || isOnPath(mesh_.prev_halfedge_handle(side));
     }
-    mesh_.collapse(h);
+    collapseEdge(mesh_, h);
     for (const int k : {0, 1})
       if (apex[k].is_valid()) onPath_[edgeBetween(to, apex[k]).idx()] = taken[k];
     retry(to);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -17,7 +18,7 @@ void splitLongest(const SurfaceMesh& input, RefinedMesh& refined, EdgePath& path
   std::size_t longest = from;
   for (std::size_t k = from; k < to; ++k)
     if (length(k) > length(longest)) longest = k;
-  const HalfedgeHandle h = refined.mesh.find_halfedge(path[longest], path[longest + 1]);
+  const HalfedgeHandle h = halfedgeBetween(refined.mesh, path[longest], path[longest + 1]);
   TRIMQUAD_ASSERT(h.is_valid());
   const VertexHandle v = splitInMiddle(input, refined, refined.mesh.edge_handle(h));
   path.insert(path.begin() + long(longest) + 1, v);

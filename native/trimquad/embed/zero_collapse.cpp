@@ -5,6 +5,7 @@
 #include "trimquad/base/error.h"
 #include "trimquad/embed/path_search.h"
 #include "trimquad/embed/zero_index.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 namespace trimquad {
 namespace {
@@ -103,15 +104,15 @@ class ZeroCollapse {
   }
 
   EdgeHandle edgeBetween(VertexHandle a, VertexHandle b) const {
-    const HalfedgeHandle h = mesh_.find_halfedge(a, b);
+    const HalfedgeHandle h = halfedgeBetween(mesh_, a, b);
     TRIMQUAD_ASSERT(h.is_valid());
     return mesh_.edge_handle(h);
   }
 
   HalfedgeHandle firstHalfedge(HalfArc h) const {
     const EdgePath& path = t_[h.arc].path;
-    return h.forward ? mesh_.find_halfedge(path[0], path[1])
-                     : mesh_.find_halfedge(path[path.size() - 1], path[path.size() - 2]);
+    return h.forward ? halfedgeBetween(mesh_, path[0], path[1])
+                     : halfedgeBetween(mesh_, path[path.size() - 1], path[path.size() - 2]);
   }
   HalfedgeHandle lastHalfedge(HalfArc h) const {
     return mesh_.opposite_halfedge_handle(firstHalfedge(h.opposite()));

@@ -11,8 +11,9 @@
 namespace trimquad {
 namespace {
 
-/// Share of the budget of Newton steps, where the constructive route follows.
-constexpr double kBriefly = 1.0 / 16;
+/// Where the constructive route follows: multiply-adds for each triangle, which is less than what that route
+/// takes.
+constexpr double kBriefly = 4e4;
 
 /// The images of the triangles: the map itself as a target.
 MapTarget imageOf(const Parametrization& map) {
@@ -51,7 +52,8 @@ BranchTranslation wholePeriod(const SeamlessMap& map) {
     const Eigen::Vector2d period = map.scale.toQuads(map.transition(h).translation);
     const int axis = std::abs(period[0]) >= std::abs(period[1]) ? 0 : 1;
     BranchTranslation whole;
-    whole[axis] = std::max(kLeastAround, int(std::lround(std::abs(period[axis])))) * (period[axis] < 0 ? -1 : 1);
+    whole[axis] =
+        std::max(kLeastAround, int(std::lround(std::abs(period[axis])))) * (period[axis] < 0 ? -1 : 1);
     whole[1 - axis] = int(std::lround(period[1 - axis]));
     return whole;
   }
@@ -89,8 +91,9 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
                            seamless.target, startsOf({&image, &seamless.target, &seamless.conformalTarget}),
                            seamless.index,  seamless.follow,
                            basis,           "optimize"};
-  const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis),
-                                     StepBudget(thorough ? 1 : kBriefly), map.counters, progress);
+  const StepBudget budget =
+      thorough ? StepBudget() : StepBudget::ofWork(kBriefly * double(seamless.mesh.n_faces()));
+  const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis), budget, map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   map.aligned = seamless.aligned;
   map.featurePoints = seamless.featurePoints;

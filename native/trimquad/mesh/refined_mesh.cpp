@@ -1,8 +1,10 @@
 #include "trimquad/mesh/refined_mesh.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "trimquad/base/error.h"
+#include "trimquad/mesh/collapse_edge.h"
 #include "trimquad/mesh/split_triangles.h"
 
 namespace trimquad {
@@ -31,7 +33,7 @@ std::optional<EdgeHandle> commonEdge(const SurfaceMesh& input, const Origin& a, 
       return holds(*e, *y) ? std::optional(*e) : std::nullopt;
   const auto *v = std::get_if<VertexHandle>(&a.element), *w = std::get_if<VertexHandle>(&b.element);
   if (!v || !w) return {};
-  const HalfedgeHandle h = input.find_halfedge(*v, *w);
+  const HalfedgeHandle h = halfedgeBetween(input, *v, *w);
   return h.is_valid() ? std::optional(input.edge_handle(h)) : std::nullopt;
 }
 
@@ -106,10 +108,17 @@ bool moveApart(const SurfaceMesh& input, RefinedMesh& refined, VertexHandle v) {
 
 RefinedMesh unrefined(const SurfaceMesh& input) {
   RefinedMesh refined;
-  refined.mesh = input;
-  for (const auto v : input.vertices()) refined.vertexOrigin.push_back({v});
-  for (const auto f : input.faces()) refined.faceOrigin.push_back(f.idx());
+  startFrom(input, refined);
   return refined;
+}
+
+void startFrom(const SurfaceMesh& input, RefinedMesh& refined) {
+  refined.mesh = input;
+  refined.vertexOrigin.clear();
+  refined.vertexOrigin.reserve(input.n_vertices());
+  for (int v = 0; v < int(input.n_vertices()); ++v) refined.vertexOrigin.push_back({VertexHandle(v)});
+  refined.faceOrigin.resize(input.n_faces());
+  std::iota(refined.faceOrigin.begin(), refined.faceOrigin.end(), 0);
 }
 
 Vector3d barycentric(const SurfaceMesh& input, FaceHandle f, const Origin& origin) {
@@ -197,29 +206,17 @@ VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, FaceH
 }
 
 std::vector<VertexHandle> compact(RefinedMesh& refined) {
-  SurfaceMesh& mesh = refined.mesh;
-  // Properties move along with their elements.
-  OpenMesh::VPropHandleT<int> vertexBefore;
-  OpenMesh::FPropHandleT<int> faceBefore;
-  mesh.add_property(vertexBefore);
-  mesh.add_property(faceBefore);
-  for (int v = 0; v < int(mesh.n_vertices()); ++v) mesh.property(vertexBefore, VertexHandle(v)) = v;
-  for (int f = 0; f < int(mesh.n_faces()); ++f) mesh.property(faceBefore, FaceHandle(f)) = f;
-  std::vector<VertexHandle> renamed(mesh.n_vertices());
-  mesh.garbage_collection();
-  std::vector<Origin> vertexOrigin(mesh.n_vertices());
-  std::vector<int> faceOrigin(mesh.n_faces());
-  for (int v = 0; v < int(mesh.n_vertices()); ++v) {
-    const int before = mesh.property(vertexBefore, VertexHandle(v));
-    renamed[before] = VertexHandle(v);
-    vertexOrigin[v] = refined.vertexOrigin[before];
+  std::vector<VertexHandle> renamed;
+  renamed.reserve(refined.mesh.n_vertices());
+  for (int v = 0; v < int(refined.mesh.n_vertices()); ++v) renamed.emplace_back(v);
+  const Renumbered renumbered = takeOutDeleted(refined.mesh);
+  for (const auto& [from, to] : renumbered.vertices) {
+    renamed[from] = VertexHandle(to);
+    refined.vertexOrigin[to] = refined.vertexOrigin[from];
   }
-  for (int f = 0; f < int(mesh.n_faces()); ++f)
-    faceOrigin[f] = refined.faceOrigin[mesh.property(faceBefore, FaceHandle(f))];
-  mesh.remove_property(vertexBefore);
-  mesh.remove_property(faceBefore);
-  refined.vertexOrigin = std::move(vertexOrigin);
-  refined.faceOrigin = std::move(faceOrigin);
+  for (const auto& [from, to] : renumbered.faces) refined.faceOrigin[to] = refined.faceOrigin[from];
+  refined.vertexOrigin.resize(refined.mesh.n_vertices());
+  refined.faceOrigin.resize(refined.mesh.n_faces());
   return renamed;
 }
 

@@ -28,6 +28,8 @@ struct RefinedMesh {
 
 /// The input's mesh, not refined yet.
 RefinedMesh unrefined(const SurfaceMesh& input);
+/// The same in place, without a second copy of the mesh.
+void startFrom(const SurfaceMesh& input, RefinedMesh& refined);
 
 /// Barycentric coordinates of an origin in the closed input triangle `f`, of its corners from
 /// halfedge_handle(f) on.
@@ -51,11 +53,12 @@ VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, EdgeH
 /// Puts a vertex in the middle of a triangle.
 VertexHandle splitInMiddle(const SurfaceMesh& input, RefinedMesh& refined, FaceHandle f);
 
-/// Takes deleted elements out of the mesh; the last ones take their numbers. Returns the new handle by old vertex index, invalid where deleted.
+/// Takes deleted elements out of the mesh; the last ones take their numbers. Returns the new
+/// handle by old vertex index; of deleted ones it says nothing.
 std::vector<VertexHandle> compact(RefinedMesh& refined);
 
-/// Moves the vertices that the input has not, each within what it lies in, where its smallest triangle is small
-/// and becomes larger.
+/// Moves the vertices that the input has not, each within what it lies in, where its smallest triangle is
+/// small and becomes larger.
 void relax(const SurfaceMesh& input, RefinedMesh& refined);
 
 /// Image of the vertex that `h` leaves in the chart that the input map has for the triangle of `h`, in quads.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
+#include <numeric>
 
 #include "trimquad/base/error.h"
 
@@ -12,7 +12,9 @@ namespace {
 class Replacement {
  public:
   Replacement(SurfaceMesh& mesh, const std::vector<TrianglePart>& parts, const std::vector<EdgeHandle>& cut)
-      : mesh_(mesh), parts_(parts), cut_(cut), sides_(parts.size()) {}
+      : mesh_(mesh), parts_(parts), cut_(cut), isCut_(mesh.n_edges(), false), sides_(parts.size()) {
+    for (const EdgeHandle e : cut) isCut_[e.idx()] = true;
+  }
 
   void run() {
     keepSides();
@@ -28,12 +30,10 @@ class Replacement {
     VertexHandle low, high;
     bool upwards;
     HalfedgeHandle* halfedge;
-    auto key() const { return std::tuple(low, high, upwards); }
+    auto key() const { return std::pair(high, upwards); }
   };
 
-  bool isCut(HalfedgeHandle h) const {
-    return std::binary_search(cut_.begin(), cut_.end(), mesh_.edge_handle(h));
-  }
+  bool isCut(HalfedgeHandle h) const { return isCut_[mesh_.edge_handle(h).idx()]; }
 
   /// Sides that are not cut keep their halfedges.
   void keepSides() {
@@ -42,7 +42,8 @@ class Replacement {
       while (end < parts_.size() && parts_[end].whole == parts_[first].whole) ++end;
       std::array<HalfedgeHandle, 3> old;
       std::size_t count = 0;
-      for (const auto h : mesh_.fh_range(parts_[first].whole))
+      HalfedgeHandle h = mesh_.halfedge_handle(parts_[first].whole);
+      for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h))
         if (!isCut(h)) old[count++] = h;
       for (std::size_t p = first; p < end; ++p)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -74,19 +75,20 @@ class Replacement {
 
   /// Edges for the new sides: those that were cut first.
   void joinSides() {
-    std::sort(new_.begin(), new_.end(), [](const NewSide& a, const NewSide& b) { return a.key() < b.key(); });
-    std::size_t reused = 0;
+    sortNew();
+    std::size_t reused = 0, edges = mesh_.n_edges();
+    mesh_.resize(mesh_.n_vertices(), edges + distinctNew() - cut_.size(), mesh_.n_faces());
     for (std::size_t i = 0; i < new_.size();) {
       const auto& [low, high, upwards, halfedge] = new_[i];
       HalfedgeHandle up;
       if (reused < cut_.size()) {
         up = mesh_.halfedge_handle(cut_[reused++], 0);
-        mesh_.set_vertex_handle(up, high);
-        mesh_.set_vertex_handle(mesh_.opposite_halfedge_handle(up), low);
       } else {
-        up = mesh_.new_edge(low, high);
+        up = mesh_.halfedge_handle(EdgeHandle(int(edges++)), 0);
       }
       const HalfedgeHandle down = mesh_.opposite_halfedge_handle(up);
+      mesh_.set_vertex_handle(up, high);
+      mesh_.set_vertex_handle(down, low);
       *halfedge = upwards ? up : down;
       const bool shared = i + 1 < new_.size() && new_[i + 1].low == low && new_[i + 1].high == high;
       if (shared) {
@@ -97,7 +99,30 @@ class Replacement {
       }
       i += shared ? 2 : 1;
     }
-    TRIMQUAD_ASSERT(reused == cut_.size());
+    TRIMQUAD_ASSERT(reused == cut_.size() && edges == mesh_.n_edges());
+  }
+
+  /// By their ends: into a bucket for each lower one, and there by the higher one.
+  void sortNew() {
+    std::vector<int> end(mesh_.n_vertices() + 1, 0);
+    for (const NewSide& side : new_) ++end[side.low.idx() + 1];
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<NewSide> sorted(new_.size());
+    for (const NewSide& side : new_) sorted[end[side.low.idx()]++] = side;
+    for (std::size_t first = 0; first < sorted.size();) {
+      const auto begin = sorted.begin() + long(first);
+      first = std::size_t(end[begin->low.idx()]);
+      std::sort(begin, sorted.begin() + long(first),
+                [](const NewSide& a, const NewSide& b) { return a.key() < b.key(); });
+    }
+    new_.swap(sorted);
+  }
+
+  std::size_t distinctNew() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < new_.size(); ++i)
+      count += i == 0 || new_[i].low != new_[i - 1].low || new_[i].high != new_[i - 1].high;
+    return count;
   }
 
   void linkBoundary() {
@@ -115,9 +140,12 @@ class Replacement {
   }
 
   void setTriangles() {
+    const auto isFirst = [&](std::size_t p) { return p == 0 || parts_[p - 1].whole != parts_[p].whole; };
+    std::size_t faces = mesh_.n_faces(), added = 0;
+    for (std::size_t p = 0; p < parts_.size(); ++p) added += !isFirst(p);
+    mesh_.resize(mesh_.n_vertices(), mesh_.n_edges(), faces + added);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      const bool isFirst = p == 0 || parts_[p - 1].whole != parts_[p].whole;
-      const FaceHandle f = isFirst ? parts_[p].whole : mesh_.new_face();
+      const FaceHandle f = isFirst(p) ? parts_[p].whole : FaceHandle(int(faces++));
       mesh_.set_halfedge_handle(f, sides_[p][0]);
       for (std::size_t k = 0; k < 3; ++k) {
         mesh_.set_face_handle(sides_[p][k], f);
@@ -131,6 +159,7 @@ class Replacement {
   SurfaceMesh& mesh_;
   const std::vector<TrianglePart>& parts_;
   const std::vector<EdgeHandle>& cut_;
+  std::vector<bool> isCut_;                           ///< by edge that was there before
   std::vector<std::array<HalfedgeHandle, 3>> sides_;  ///< by part, from its corners
   std::vector<NewSide> new_;
   std::vector<HalfedgeHandle> boundary_;                   ///< the new ones without a triangle

@@ -44,28 +44,27 @@ std::vector<Neighbourhood> Neighbourhoods::around(const std::vector<FaceHandle>&
           if (!inside[f]) inside[f] = 1, region.push_back(f);
   std::sort(region.begin(), region.end());
 
-  const auto isFree = [&](int unknown) {
-    const auto dependent = facesOf_[unknown];
-    return std::all_of(dependent.begin(), dependent.end(), [&](int f) { return inside[f]; });
-  };
+  // Free are the unknowns that nothing outside depends on.
+  std::vector<int> uses(facesOf_.start.size() - 1, 0);
+  for (const int f : region)
+    for (const int unknown : unknownsOf_[f]) ++uses[unknown];
   std::vector<int> free;
   for (const int f : region)
     for (const int unknown : unknownsOf_[f])
-      if (isFree(unknown)) free.push_back(unknown);
+      if (uses[unknown] == facesOf_[unknown].size()) free.push_back(unknown);
   std::sort(free.begin(), free.end());
   free.erase(std::unique(free.begin(), free.end()), free.end());
+  std::vector<int>& place = uses;  // from now on, -1 where not free
+  std::fill(place.begin(), place.end(), -1);
+  for (int i = 0; i < int(free.size()); ++i) place[free[i]] = i;
 
-  const auto place = [](const std::vector<int>& ascending, int element) {
-    return int(std::lower_bound(ascending.begin(), ascending.end(), element) - ascending.begin());
-  };
   DisjointSets sets(free.size());
   std::vector<int> anyFree(region.size(), -1);
   for (size_t i = 0; i < region.size(); ++i)
     for (const int unknown : unknownsOf_[region[i]]) {
-      if (!isFree(unknown)) continue;
-      const int mine = place(free, unknown);
-      if (anyFree[i] < 0) anyFree[i] = mine;
-      sets.unite(anyFree[i], mine);
+      if (place[unknown] < 0) continue;
+      if (anyFree[i] < 0) anyFree[i] = place[unknown];
+      sets.unite(anyFree[i], place[unknown]);
     }
   std::vector<Neighbourhood> parts;
   std::vector<int> part(free.size(), -1);

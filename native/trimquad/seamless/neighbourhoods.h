@@ -31,6 +31,7 @@ class Neighbourhoods {
       const int *first, *last;
       const int* begin() const { return first; }
       const int* end() const { return last; }
+      int size() const { return int(last - first); }
     };
     Range operator[](int i) const { return {element.data() + start[i], element.data() + start[i + 1]}; }
   };

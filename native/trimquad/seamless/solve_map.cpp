@@ -45,7 +45,7 @@ void turnTowardsTarget(const MapEnergy& energy, const SurfaceMesh& mesh, const S
 /// z of a locally injective map grown from a convex embedding, where the basis admits one.
 std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMesh& mesh,
                                         const SeamGraph& seams, const MapTarget& target,
-                                        const SeamBasis& basis, const Eigen::VectorXd& poisson) {
+                                        const SeamBasis& basis) {
   double area = 0;
   for (const auto& t : target) {
     const Eigen::Vector2d a = t[1] - t[0], b = t[2] - t[0];
@@ -54,7 +54,7 @@ std::optional<Eigen::VectorXd> grownMap(const MapEnergy& energy, const SurfaceMe
   std::optional<double> period;
   Eigen::Vector2d wanted = Eigen::Vector2d::Zero();
   if (basis.branchCount() > 0) {
-    const Eigen::VectorXd x = energy.coordinates(poisson);
+    const Eigen::VectorXd x = energy.coordinates(poissonMap(mesh, target, basis));
     wanted = {x[basis.translation(0, 0)], x[basis.translation(0, 1)]};
     period = wanted.norm();
   }
@@ -192,6 +192,7 @@ UntangledMaps untangledMaps(const MapProblem& problem, const std::optional<Eigen
       return maps;
     }
   for (const auto& start : starts) {
+    if (budget.spent() && !maps.reached.empty()) break;
     ++counters.starts;
     even.aim(*start.target);
     even.evenOut(start.evenness);
@@ -213,7 +214,7 @@ Eigen::VectorXd stubbornMap(const MapProblem& problem, const UntangledMaps& maps
   const auto& [mesh, seams, target, starts, index, follow, basis, stage] = problem;
   const MapEnergy energy(mesh, target, basis);
   if (effort == Effort::Full)
-    if (const auto grown = grownMap(energy, mesh, seams, target, basis, poissonMap(mesh, target, basis))) {
+    if (const auto grown = grownMap(energy, mesh, seams, target, basis)) {
       counters.convexStart = true;
       return *grown;
     }

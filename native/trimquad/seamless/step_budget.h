@@ -9,6 +9,8 @@ class StepBudget {
  public:
   /// \param share  of what is spent at most on a map for which there is no other way
   explicit StepBudget(double share = 1) : left_(share * kWork) {}
+  /// \param work  multiply-adds
+  static StepBudget ofWork(double work) { return StepBudget(work / kWork); }
 
   bool spent() const { return left_ <= 0; }
   void spend(double work) { left_ -= work; }

@@ -109,10 +109,11 @@ void untangleNeighbourhoods(const MapEnergy& energy, const WrongTriangles& wrong
                             int& kept, StepBudget& budget, const Progress& progress) {
   constexpr int kFewestRings = 2, kMostRings = 16;
   constexpr double kLargest = 0.5;  // of the triangles: for more it is not worth while to hold the others
+  if (budget.spent()) return;
   auto triangles = wrong(z);
   if (triangles.empty()) return;
   const Neighbourhoods neighbourhoods(energy);
-  for (int rings = kFewestRings; rings <= kMostRings && !triangles.empty(); rings *= 2) {
+  for (int rings = kFewestRings; rings <= kMostRings && !triangles.empty() && !budget.spent(); rings *= 2) {
     auto parts = neighbourhoods.around(triangles, rings);
     std::stable_sort(parts.begin(), parts.end(),
                      [](const auto& a, const auto& b) { return a.faces.size() < b.faces.size(); });

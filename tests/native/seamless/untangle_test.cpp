@@ -176,6 +176,20 @@ TEST(Untangling, whatStaysWrongIsUntangledAsAWhole) {
   EXPECT_EQ(sheet.flippedIn(z), 0);
 }
 
+TEST(Untangling, aSpentBudgetIsNotLookedIntoAnyFurther) {
+  const Sample sheet(sample::sheet(20, 20, sample::wavy));
+  Eigen::VectorXd z = sheet.flat;
+  StepBudget budget = StepBudget::ofWork(1e6);
+  budget.spend(2e6);
+  int kept = 0, looks = 0;
+  const auto counted = [&](const Eigen::VectorXd&) {
+    return ++looks, std::vector<FaceHandle>{FaceHandle(200)};
+  };
+  untangleNeighbourhoods(*sheet.energy, counted, z, kept, budget, Progress());
+  EXPECT_EQ(kept + looks, 0);
+  EXPECT_EQ(z, sheet.flat);
+}
+
 TEST(Neighbourhoods, areAllThatTheirUnknownsMove) {
   const Sample torus(bumpyTorus(10));
   const MapEnergy& energy = *torus.energy;
