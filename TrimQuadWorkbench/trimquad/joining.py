@@ -7,10 +7,12 @@ from .error import Error, cancelled
 from .native import load
 
 # A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
-# again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), cut in
-# two where it bends most, to this part of the tolerance.
+# again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), with the
+# parameters closer to the map's, with both, cut in two where it bends most, to this part of the tolerance.
 REFITS = (
     {"smallest_rectangle": True},
+    {"slides": False},
+    {"smallest_rectangle": True, "slides": False},
     {"cut": True},
     {"cut": True},
     {"part": 0.4},
