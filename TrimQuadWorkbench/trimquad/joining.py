@@ -108,6 +108,8 @@ def _refit(item, charts, error, result, progress):
 
 
 def _applies(way, item, charts):
+    if "slides" in way and item.fitted.several:
+        return False
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
     return bool(charts) or "cut" not in way
