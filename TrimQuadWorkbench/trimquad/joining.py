@@ -7,10 +7,12 @@ from .error import Error, cancelled
 from .native import load
 
 # A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
-# again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), cut in
-# two where it bends most, to this part of the tolerance.
+# again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), with the
+# parameters closer to the map's, with both, cut in two where it bends most, to this part of the tolerance.
 REFITS = (
     {"smallest_rectangle": True},
+    {"slides": False},
+    {"smallest_rectangle": True, "slides": False},
     {"cut": True},
     {"cut": True},
     {"part": 0.4},
@@ -111,6 +113,8 @@ def _refit(item, charts, error, result, progress):
 
 
 def _applies(way, item, charts):
+    if "slides" in way and item.fitted.several:
+        return False
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
     return bool(charts) or "cut" not in way

@@ -357,7 +357,7 @@ def _polygonal(quads, item, options):
     return quads
 
 
-def fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
+def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0, only=True):
     """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
     for `only`."""
     options = result.options
@@ -372,6 +372,7 @@ def fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
             smallest_rectangle=smallest_rectangle,
             bisections=item.bisections,
             degree=options.degree,
+            slides=slides,
             threads=max(1, options.threads // len(result.regions)),
         ),
         progress,

@@ -53,11 +53,12 @@ void bindSpline(py::module_& m) {
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")
       .def(py::init([](double tolerance, double enough, bool smallestRectangle,
-                       std::vector<std::vector<int>> bisections, int degree, int threads) {
-             return FitOptions{tolerance, enough, smallestRectangle, std::move(bisections), degree, threads};
+                       std::vector<std::vector<int>> bisections, int degree, bool slides, int threads) {
+             return FitOptions{tolerance, enough, smallestRectangle, std::move(bisections), degree,
+                               slides,    threads};
            }),
            py::kw_only(), py::arg("tolerance"), py::arg("enough"), py::arg("smallest_rectangle"),
-           py::arg("bisections"), py::arg("degree"), py::arg("threads"));
+           py::arg("bisections"), py::arg("degree"), py::arg("slides"), py::arg("threads"));
   m.def("fit_surface", &fitSurface, py::arg("region"), py::arg("grid"), py::arg("options"),
         py::arg("progress"), Released());
 

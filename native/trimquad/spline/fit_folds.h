@@ -14,6 +14,8 @@ namespace trimquad {
 struct FitPlace {
   int chart;
   Eigen::Vector2d parameter;
+  /// Of a foot: projects onto the directions in which it may move.
+  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
 };
 
 /// Those of the small triangles between samples that have a corner among the chosen samples.

@@ -31,6 +31,9 @@ constexpr double kCorrectedWins = 0.7;
 constexpr double kCorrectedWinsClose = 0.95;
 /// How much more the samples that deviate most weigh in the next round, to even out the largest deviations.
 constexpr double kEmphasis = 10;
+/// Where samples slide, little is left but what the knots allow, and weights that grow with the deviation
+/// from round to round even it out (Lawson); what they grow by at most, and in all.
+constexpr double kSlidingEmphasis = 3, kMostEmphasis = 20;
 /// The same of samples next to where the surface is turned over, which keep the map's parameters: these fold
 /// nowhere.
 constexpr double kFoldEmphasis = 20;
@@ -45,6 +48,13 @@ constexpr double kFewTurned = 0.05;
 /// surface without them is found; and rounds that are spent on getting rid of them.
 constexpr double kSmallFolds = 3e-3;
 constexpr int kFoldPatience = 8;
+/// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
+/// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
+/// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
+/// parameter correction on each.
+constexpr double kSpacedFor = 0.5, kSpacedPoles = 0.55, kSpacingReserve = 0.9, kWorthSpacing = 0.95,
+                 kLeastSpacing = 0.75;
+constexpr int kMaxSpacings = 6, kMaxSpacedCorrections = 4;
 /// Part of the control samples at most that may have started from bad parameters.
 constexpr double kFewLost = 0.01;
 
@@ -64,7 +74,8 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       threads_(options.threads),
       progress_(progress),
       triangles_(triangleTree(region.mesh)),
-      policy_(policy) {}
+      policy_(policy),
+      slides_(options.slides && !policy.several) {}
 
 void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
   const double quad = std::sqrt(surfaceArea / mapArea);
@@ -86,11 +97,12 @@ FittedSurface FitRounds::rounds() {
   for (rounds_ = 1; rounds_ <= policy_.maxRounds; ++rounds_) {
     if (!solved_) solve();
     solved_ = false;
+    if (slides_ && corrections_ > 0 && !deviation_.turnedOver.empty()) stopSliding();
     if (rounds_ == 1) start_ = best_ = deviation_.max;
     best_ = std::min(best_, deviation_.max);
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
     if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0))
-      return std::move(result_);
+      return economised();
     keepIfEnough();
     if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
     stiffenFolds();
@@ -119,7 +131,7 @@ std::vector<std::vector<Datum>> FitRounds::dataOf(const std::vector<SurfaceSampl
   std::vector<std::vector<Datum>> data(charts());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& s = samples[i];
-    data[s.chart].push_back({s.parameter, s.point, s.weight * emphasis[i]});
+    data[s.chart].push_back({s.parameter, s.point, s.weight * emphasis[i], s.free});
   }
   return data;
 }
@@ -162,10 +174,15 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
       Eigen::Vector2d move = (at.parameter - start.parameter).cwiseAbs();
       if (surface.closedU) move[0] = std::min(move[0], surface.lastU() - surface.firstU() - move[0]);
       const SplineLine &u = space(at.chart).u, &v = space(at.chart).v;
-      const bool near =
-          move[0] <= u.width(u.spanOf(at.parameter[0])) && move[1] <= v.width(v.spanOf(at.parameter[1]));
+      const bool near = !limited && move[0] <= u.width(u.spanOf(at.parameter[0])) &&
+                        move[1] <= v.width(v.spanOf(at.parameter[1]));
       turnedOver[i] = !s.agrees(normal) && !facesLikewise(jet.s, normal);
-      feet[i] = near && !limited && !turnedOver[i] && !isHeld(s) ? at : from;
+      if (!near || turnedOver[i] || isHeld(s)) {
+        feet[i] = from;
+        continue;
+      }
+      feet[i] = at;
+      feet[i].free.setIdentity() -= normal * normal.transpose() / normal.squaredNorm();
     }
   });
   return deviationOf(samples, turnedOver);
@@ -197,23 +214,37 @@ void FitRounds::noteTurned(const std::vector<SurfaceSample>& samples, const Devi
   if (!turned_.empty()) turnedPoint_ = samples[deviation.turnedOver[0]].point;
 }
 
-void FitRounds::moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) {
+void FitRounds::moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].chart = places[i].chart;
     samples[i].parameter = places[i].parameter;
+    if (slides_)
+      samples[i].free = places[i].free;
+    else
+      samples[i].free.setZero();
   }
 }
 
 /// Moves the parameters to the feet.
 void FitRounds::correct() {
   ++corrections_;
-  if (policy_.takesBack) beforeCorrection_ = state();
+  if (policy_.takesBack || slides_) beforeCorrection_ = state();
   moveTo(feet_, samples_);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const double part = samples_[i].distance / deviation_.max;
-    emphasis_[i] = 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
+    emphasis_[i] = slides_ ? std::min(kMostEmphasis, emphasis_[i] * (1 + kSlidingEmphasis * part * part))
+                           : 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
   }
   unfold(deviation_.turnedOver);
+}
+
+/// Back to before the correction that turned the surface over somewhere; from here on all of the distances
+/// count.
+void FitRounds::stopSliding() {
+  slides_ = false;
+  restore(std::move(beforeCorrection_));
+  for (auto& s : samples_) s.free.setZero();
+  emphasis_.assign(samples_.size(), 1);
 }
 
 /// Around samples where the surface is turned over: back to the map's parameters.
@@ -222,6 +253,7 @@ void FitRounds::unfold(const std::vector<int>& turnedOver) {
     for (const int i : cell) {
       samples_[i].chart = ofMap_[i].chart;
       samples_[i].parameter = ofMap_[i].parameter;
+      samples_[i].free.setZero();
       emphasis_[i] = kFoldEmphasis;
     }
 }
@@ -380,6 +412,40 @@ void FitRounds::refine() {
   atRefinement_ = best_;
   if (idle_ > 0) giveWay();
   if (idle_ > kPatience || !insertKnots() || poles() > policy_.maxPoles) throw unreachable();
+}
+
+/// The surfaces, which are within the tolerance, or such over fewer knots. Knots are halved where they do not
+/// do, which leaves up to twice as many in every direction as there need be.
+FittedSurface FitRounds::economised() {
+  kept_ = result_;
+  int fewest = poles();
+  bool has = respaceByBending(kSpacedFor * tolerance_, kSpacedPoles);
+  for (int attempt = 0; attempt < kMaxSpacings && has && poles() < kWorthSpacing * fewest; ++attempt) {
+    if (fitsRespaced()) {
+      kept_ = result_;
+      fewest = poles();
+      has = respaceByResidual(kSpacingReserve * tolerance_, kLeastSpacing);
+    } else {
+      has = respaceByResidual(kSpacingReserve * tolerance_, 1);
+    }
+  }
+  return std::move(*kept_);
+}
+
+/// Whether surfaces over knots that were respaced keep the tolerance, from the feet on those before.
+bool FitRounds::fitsRespaced() {
+  takeSamples();
+  measure(samples_, feet_);
+  moveTo(feet_, samples_);
+  solve();
+  for (corrections_ = 0; deviation_.max > tolerance_; solve()) {
+    const bool close = deviation_.max <= kClose * tolerance_;
+    if (corrections_ > 0 &&
+        (!close || corrections_ >= kMaxSpacedCorrections || deviation_.max > kCorrectionPays * previous_.max))
+      return false;
+    correct();
+  }
+  return deviation_.turnedOver.empty() && verified(tolerance_, 0);
 }
 
 /// More fairness where the surfaces are turned over in few places.

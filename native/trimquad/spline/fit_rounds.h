@@ -58,6 +58,11 @@ class FitRounds {
   /// Knots where samples fail, and where others than these are turned over for want of them; false where none
   /// can be inserted.
   virtual bool insertKnots() = 0;
+  /// Sets anew as many knots as the bending of the surfaces asks for a deviation, for part of the poles at
+  /// most; false where that is not done.
+  virtual bool respaceByBending(double /*deviation*/, double /*part*/) { return false; }
+  /// The same as the residual asks, for part of the knots at least.
+  virtual bool respaceByResidual(double /*deviation*/, double /*part*/) { return false; }
   /// Called before knots are inserted where the refinement before brought little.
   virtual void giveWay() {}
 
@@ -91,8 +96,9 @@ class FitRounds {
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
                                       const std::vector<int>& chosen);
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
-  static void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples);
+  void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) const;
   void correct();
+  void stopSliding();
   void unfold(const std::vector<int>& turnedOver);
   void chooseParameters();
   void keepIfEnough();
@@ -104,6 +110,8 @@ class FitRounds {
   bool stalled() const { return best_ > 0.5 * atRefinement_; }
   bool correctionPays() const;
   void refine();
+  FittedSurface economised();
+  bool fitsRespaced();
   void stiffen(double factor);
   void stiffenFolds();
   /// Whether only folds are to go yet, and there is fairness where they are.
@@ -123,6 +131,7 @@ class FitRounds {
   std::vector<double> emphasis_;        ///< by sample: factor of its weight
   State beforeCorrection_;
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
+  bool slides_;                 ///< samples whose parameters are their feet, along the surface
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0;

@@ -7,6 +7,7 @@
 #include "trimquad/spline/fit_layout.h"
 #include "trimquad/spline/fit_rounds.h"
 #include "trimquad/spline/knot_refinement.h"
+#include "trimquad/spline/knot_spacing.h"
 #include "trimquad/spline/spline_space.h"
 #include "trimquad/spline/surface_samples.h"
 
@@ -122,6 +123,21 @@ class SurfaceFit : public FitRounds {
     std::vector<Eigen::Vector2d> failing;
     for (const auto& x : failing_) failing.push_back(x.parameter);
     return refineKnots(space_, samples_, cells_, failing, narrowest_);
+  }
+
+  bool respaceByBending(double deviation, double part) override {
+    auto demand = demandOfBending(result_.surfaces[0], space_, samples_, deviation);
+    limitPoles(demand, space_, part * space_.poles());
+    respace(demand);
+    return true;
+  }
+  bool respaceByResidual(double deviation, double part) override {
+    respace(demandOfResidual(space_, samples_, cells_, deviation, part));
+    return true;
+  }
+  void respace(const KnotDemand& demand) {
+    space_.u = respaced(space_.u, demand[0]);
+    space_.v = respaced(space_.v, demand[1]);
   }
 
   SplineSpace space_;

@@ -16,7 +16,10 @@ struct FitOptions {
   /// Charts to cut in two, again and again: by round, indices of the layout of the round before. Regions for
   /// one chart are cut as chart 0.
   std::vector<std::vector<int>> bisections = {};
-  int degree = 3;   ///< 2..5
+  int degree = 3;  ///< 2..5
+  /// Whether points of the region may slide along a single surface, which needs the fewest poles, as long as
+  /// it folds over nowhere.
+  bool slides = true;
   int threads = 1;  ///< the result does not depend on it
 };
 

@@ -9,7 +9,25 @@ namespace {
 /// other.
 constexpr double kTakesPart = 0.4;
 
-/// By knot rectangle: how much the residual varies along u and v, squared, for a step of one interval.
+bool splits(const SplineLine& line, int span, double narrowest) {
+  return line.width(span) >= 2 * narrowest;
+}
+
+void halve(SplineLine& line, const std::vector<char>& marked) {
+  std::vector<double> breaks;
+  for (int i = 0; i < line.spans(); ++i) {
+    const double a = line.breaks[i], b = line.breaks[i + 1];
+    breaks.push_back(a);
+    if (!marked[i]) continue;
+    const double middle = 0.5 * (a + b);
+    breaks.push_back(b - a >= 2 ? std::floor(middle) : middle);
+  }
+  breaks.push_back(line.breaks.back());
+  line.breaks = std::move(breaks);
+}
+
+}  // namespace
+
 std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space,
                                               const std::vector<SurfaceSample>& samples,
                                               const std::vector<std::array<int, 3>>& cells) {
@@ -35,24 +53,10 @@ std::vector<Eigen::Array2d> residualVariation(const SplineSpace& space,
   return variation;
 }
 
-bool splits(const SplineLine& line, int span, double narrowest) {
-  return line.width(span) >= 2 * narrowest;
+std::array<bool, 2> directionsTakingPart(const Eigen::Array2d& variation) {
+  const double ratio = kTakesPart * kTakesPart;
+  return {variation[0] >= ratio * variation[1], variation[1] >= ratio * variation[0]};
 }
-
-void halve(SplineLine& line, const std::vector<char>& marked) {
-  std::vector<double> breaks;
-  for (int i = 0; i < line.spans(); ++i) {
-    const double a = line.breaks[i], b = line.breaks[i + 1];
-    breaks.push_back(a);
-    if (!marked[i]) continue;
-    const double middle = 0.5 * (a + b);
-    breaks.push_back(b - a >= 2 ? std::floor(middle) : middle);
-  }
-  breaks.push_back(line.breaks.back());
-  line.breaks = std::move(breaks);
-}
-
-}  // namespace
 
 bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
                  const std::vector<std::array<int, 3>>& cells, const std::vector<Eigen::Vector2d>& failing,
@@ -62,10 +66,8 @@ bool refineKnots(SplineSpace& space, const std::vector<SurfaceSample>& samples,
   bool any = false;
   for (const auto& x : failing) {
     const int i = space.u.spanOf(x[0]), j = space.v.spanOf(x[1]);
-    const Eigen::Array2d here = variation[i + size_t(space.u.spans()) * j];
-    const double ratio = kTakesPart * kTakesPart;
+    const auto [wantU, wantV] = directionsTakingPart(variation[i + size_t(space.u.spans()) * j]);
     const bool canU = splits(space.u, i, narrowest), canV = splits(space.v, j, narrowest);
-    const bool wantU = here[0] >= ratio * here[1], wantV = here[1] >= ratio * here[0];
     const bool u = canU && (wantU || !canV), v = canV && (wantV || !canU);
     inU[i] |= u;
     inV[j] |= v;

@@ -7,6 +7,7 @@
 #include "trimquad/base/error.h"
 #include "trimquad/base/sparse_solver.h"
 #include "trimquad/spline/block_cholesky.h"
+#include "trimquad/spline/sliding_data.h"
 
 namespace trimquad {
 namespace {
@@ -222,6 +223,25 @@ void SplineSpace::forEachRectangle(const std::vector<Datum>& data, const Fairnes
   }
 }
 
+template <class Number>
+void SplineSpace::addSliding(const std::vector<Datum>& data, const Eigen::Vector3d& middle,
+                             const Number& number, SlidingData& sliding) const {
+  const auto knotsU = u.knots(), knotsV = v.knots();
+  BasisFunctions bu, bv;
+  for (const Datum& d : data) {
+    if (d.free.isZero()) continue;
+    basisFunctions(knotsU, u.degree, d.parameter[0], 0, bu);
+    basisFunctions(knotsV, v.degree, d.parameter[1], 0, bv);
+    std::vector<std::pair<int, double>> terms;
+    for (int b = 0; b <= v.degree; ++b)
+      for (int a = 0; a <= u.degree; ++a) {
+        const int i = u.closed ? (bu.first + a) % u.unknowns() : bu.first + a;
+        terms.emplace_back(number(i, bv.first + b), bu.value[0][a] * bv.value[0][b]);
+      }
+    sliding.add(d, d.point - middle, std::move(terms));
+  }
+}
+
 std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>& data,
                                                        const Fairness& fairness,
                                                        const Progress& progress) const {
@@ -238,11 +258,17 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
                        for (int x = 0; x < unknowns.count; ++x) rhs.row(unknowns.index[x]) += localRhs.row(x);
                      });
   };
+  SlidingData sliding;
+  addSliding(data, middle, number, sliding);
   if (number.blockSize <= kLargestBlock) {
     BlockCholesky matrix(poles(), number.blockSize);
     assemble([&](int i, int j, double value) { matrix.add(i, j, value); });
     if (!matrix.factorize(progress)) return {};
-    matrix.solveInPlace(rhs);
+    const auto solve = [&](Eigen::MatrixXd x) {
+      matrix.solveInPlace(x);
+      return x;
+    };
+    rhs = sliding.minimum(solve(std::move(rhs)), solve, progress);
   } else {
     std::vector<Eigen::Triplet<double>> entries;
     assemble([&](int i, int j, double value) { entries.emplace_back(i, j, value); });
@@ -252,7 +278,8 @@ std::optional<SplineSurface> SplineSpace::leastSquares(const std::vector<Datum>&
     SparseSolver solver("fit");
     progress.check();
     if (!solver.tryFactorize(matrix)) return {};
-    rhs = solver.solve(rhs);
+    const auto solve = [&](const Eigen::MatrixXd& x) { return solver.solve(x); };
+    rhs = sliding.minimum(solve(rhs), solve, progress);
   }
   rhs.rowwise() += middle.transpose();
   return surfaceOf(*this, number, rhs);

@@ -10,6 +10,8 @@
 
 namespace trimquad {
 
+class SlidingData;
+
 /// The splines of one variable with simple knots at `breaks`: over an interval, or closed with their span as
 /// period.
 struct SplineLine {
@@ -36,6 +38,8 @@ struct Datum {
   Eigen::Vector2d parameter;
   Eigen::Vector3d point;
   double weight;  ///< area of the parameter plane that it stands for, quads^2
+  /// Projects onto the directions in which the surface may slide along the point.
+  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
 };
 
 /// Weights of the thin-plate energy, relative to an integral of squared distance over the parameter plane.
@@ -66,8 +70,9 @@ struct SplineSpace {
   int poles() const { return u.unknowns() * v.unknowns(); }
 
   /// The spline surface that minimises sum weight |S - point|^2 + fairness * integral of Suu^2 + 2 Suv^2 +
-  /// Svv^2. Closed splines come out clamped, with end columns of poles that are equal bit by bit. Empty where
-  /// the data and the fairness do not determine it.
+  /// Svv^2, where little of the distance counts along the directions in which a datum is free. Closed splines
+  /// come out clamped, with end columns of poles that are equal bit by bit. Empty where the data and the
+  /// fairness do not determine it.
   std::optional<SplineSurface> leastSquares(const std::vector<Datum>& data, const Fairness& fairness,
                                             const Progress& progress) const;
 
@@ -79,6 +84,9 @@ struct SplineSpace {
                           std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& rhs) const;
 
  private:
+  template <class Number>
+  void addSliding(const std::vector<Datum>& data, const Eigen::Vector3d& middle, const Number& number,
+                  SlidingData& sliding) const;
   template <class Emit>
   void forEachRectangle(const std::vector<Datum>& data, const Fairness& fairness,
                         const Eigen::Vector3d& middle, const Progress* progress, const Emit& emit) const;

@@ -95,7 +95,7 @@ double SurfaceSamples::areaOf(FaceHandle f) const {
 
 std::vector<SurfaceSample> SurfaceSamples::make(const SplineSpace& space, bool control,
                                                 const Progress& progress) {
-  const int across = kSamplesAcrossSpan + (control ? 1 : 0);
+  const int across = control ? kControlsAcrossSpan : kSamplesAcrossSpan;
   std::vector<SurfaceSample> samples;
   cells_.clear();
   if (!control) samples = vertices_;

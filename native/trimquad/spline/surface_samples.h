@@ -12,6 +12,9 @@ namespace trimquad {
 
 /// Samples along a side of a knot rectangle.
 inline constexpr int kSamplesAcrossSpan = 4;
+/// The same of control samples of a single surface: where the boundary cuts off part of a knot rectangle, few
+/// of the fit's are left in it.
+inline constexpr int kControlsAcrossSpan = 7;
 /// One triangle in this many is smaller than the extent that is given for them.
 inline constexpr std::size_t kSmallTriangles = 20;
 /// Part of the weight that the mesh's vertices carry.
@@ -27,7 +30,9 @@ struct SurfaceSample {
   int chart = 0;              ///< of the layout, where there are several
   Eigen::Vector2d parameter;  ///< quads; in a closed direction within one period of the seam
   double weight = 0;          ///< area of the chart that it stands for, quads^2
-  double distance = 0;        ///< from the surface, along its normal: signed, model units
+  /// Projects onto the directions in which its foot may move: none where the parameter is not a foot's.
+  Eigen::Matrix3d free = Eigen::Matrix3d::Zero();
+  double distance = 0;  ///< from the surface, along its normal: signed, model units
 
   /// Whether a surface with the given normal has its outside here where the region has it.
   bool agrees(const Eigen::Vector3d& n) const { return n.dot(normal) > 0 || n.dot(meshNormal) > 0; }
