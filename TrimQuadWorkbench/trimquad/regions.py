@@ -52,6 +52,7 @@ class RegionResult:
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
         self.other_maps = []  # those that were tried
         self.bisections = []  # by round: charts cut in two because their faces were at fault
+        self.smoothings = {}  # by chart: in how many steps its surface is made smoother, for the same reason
         self.seconds = {}
         self.cut_from = None
         self.fitted_closer = False
@@ -205,7 +206,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS):
             _map(other, index, result, progress)
             other.fitted = _run(other, progress, "fit", fit, other, result)
             item.fitted, item.fitted_from = other.fitted, other
-            item.refits, item.bisections = 0, []
+            item.refits, item.bisections, item.smoothings = 0, [], {}
             return True
         except Error as error:
             if error.kind == "cancelled":
@@ -319,6 +320,7 @@ def fit(item, result, progress, smallest_rectangle=False, part=1.0, only=True):
             enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
             smallest_rectangle=smallest_rectangle,
             bisections=item.bisections,
+            smoothings=item.smoothings,
             degree=options.degree,
             threads=max(1, options.threads // len(result.regions)),
         ),
