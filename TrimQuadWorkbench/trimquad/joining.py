@@ -8,16 +8,21 @@ from .native import load
 
 # A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
 # again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), with the
-# parameters closer to the map's, with both, cut in two where it bends most, to this part of the tolerance.
+# parameters closer to the map's, with both, cut in two where it bends most, smoother as far as the tolerance allows (one of
+# several), to this part of the tolerance.
 REFITS = (
     {"smallest_rectangle": True},
     {"slides": False},
     {"smallest_rectangle": True, "slides": False},
     {"cut": True},
+    {"smoother": True},
     {"cut": True},
+    {"smoother": True},
     {"part": 0.4},
     {"part": 0.16},
 )
+# Of more fairness, for charts whose faces are at fault.
+STEPS = 2
 # The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
 # have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first.
 CLOSER = 0.1
@@ -72,7 +77,10 @@ def trim(result, progress):
 def _refit_faulty(result, progress):
     """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any."""
     faulty = {}  # index of the region: charts and a fault
-    for face, faults in zip(result.spline.faces, load().face_faults(result.spline)):
+    faces = result.spline.faces
+    folded = [r.fitted.folded_charts if r.fitted is not None else () for r in result.regions]
+    folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
+    for face, faults in zip(faces, load().face_faults(result.spline, folded_faces)):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
     if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
@@ -101,6 +109,11 @@ def _refit(item, charts, error, result, progress):
         way = dict(REFITS[item.refits - 1])
         if way.pop("cut", False):
             item.bisections = [*item.bisections, sorted(charts)]
+            for chart in charts:
+                item.smoothings.setdefault(chart, 0)
+        if way.pop("smoother", False):
+            for chart in charts:
+                item.smoothings[chart] = item.smoothings.get(chart, 0) + STEPS
         with progress.stage("fit", item.name) as native_progress:
             item.fitted = regions.fit(item, result, native_progress, **way)
     except Error as failure:
@@ -117,6 +130,8 @@ def _applies(way, item, charts):
         return False
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
+    if "smoother" in way:
+        return bool(charts) and item.fitted.several
     return bool(charts) or "cut" not in way
 
 

@@ -68,6 +68,7 @@ class RegionResult:
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
         self.other_maps = []  # those that were tried
         self.bisections = []  # by round: charts cut in two because their faces were at fault
+        self.smoothings = {}  # by chart: in how many steps its surface is made smoother, for the same reason
         self.seconds = {}
         self.cut_from = None
         self.fitted_closer = False
@@ -256,7 +257,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
                 item.other_maps = [w for w in item.other_maps if w != way]
                 continue
             item.fitted, item.fitted_from = other.fitted, other
-            item.refits, item.bisections = 0, []
+            item.refits, item.bisections, item.smoothings = 0, [], {}
             return True
         except Error as error:
             if error.kind == "cancelled":
@@ -371,6 +372,7 @@ def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0,
             enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
             smallest_rectangle=smallest_rectangle,
             bisections=item.bisections,
+            smoothings=item.smoothings,
             degree=options.degree,
             slides=slides,
             threads=max(1, options.threads // len(result.regions)),

@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <set>
 
 #include "bindings.h"
 #include "trimquad/spline/fit_surface.h"
@@ -21,7 +22,7 @@ double edgeTolerance(const SplineModel& model, const SplineFace& face) {
 
 py::list foldedOf(const FittedSurface& fit) {
   py::list places;
-  for (const auto& p : fit.folded) places.append(py::make_tuple(p[0], p[1], p[2]));
+  for (const auto& [p, chart] : fit.folded) places.append(py::make_tuple(p[0], p[1], p[2]));
   return places;
 }
 
@@ -29,6 +30,12 @@ std::size_t controlPointsOf(const FittedSurface& fit) {
   std::size_t sum = fit.surface.poles.size();
   for (const SplineSurface& surface : fit.surfaces) sum += surface.poles.size();
   return sum;
+}
+
+std::set<int> foldedChartsOf(const FittedSurface& fit) {
+  std::set<int> charts;
+  for (const auto& fold : fit.folded) charts.insert(fold.chart);
+  return charts;
 }
 
 py::list deviationsOf(const FittedSurface& fit) {
@@ -46,6 +53,7 @@ void bindSpline(py::module_& m) {
       .def_readonly("rms_deviation", &FittedSurface::rmsDeviation)
       .def_property_readonly("deviations", &deviationsOf, "by chart: largest, rms, place of the largest")
       .def_property_readonly("folded", &foldedOf)
+      .def_property_readonly("folded_charts", &foldedChartsOf)
       .def_readonly("samples", &FittedSurface::samples)
       .def_property_readonly("control_points", &controlPointsOf,
                              "of all its surfaces, before they are trimmed")
@@ -53,12 +61,15 @@ void bindSpline(py::module_& m) {
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")
       .def(py::init([](double tolerance, double enough, bool smallestRectangle,
-                       std::vector<std::vector<int>> bisections, int degree, bool slides, int threads) {
-             return FitOptions{tolerance, enough, smallestRectangle, std::move(bisections), degree,
-                               slides,    threads};
+                       std::vector<std::vector<int>> bisections, std::map<int, int> smoothings, int degree,
+                       bool slides, int threads) {
+             return FitOptions{
+                 tolerance, enough, smallestRectangle, std::move(bisections), std::move(smoothings),
+                 degree,    slides, threads};
            }),
            py::kw_only(), py::arg("tolerance"), py::arg("enough"), py::arg("smallest_rectangle"),
-           py::arg("bisections"), py::arg("degree"), py::arg("slides"), py::arg("threads"));
+           py::arg("bisections"), py::arg("smoothings"), py::arg("degree"), py::arg("slides"),
+           py::arg("threads"));
   m.def("fit_surface", &fitSurface, py::arg("region"), py::arg("grid"), py::arg("options"),
         py::arg("progress"), Released());
 

@@ -181,7 +181,7 @@ class _AlwaysAtFault:
     def __getattr__(self, name):
         return getattr(self._native, name)
 
-    def face_faults(self, spline):
+    def face_faults(self, spline, folded):
         self.checks += 1
         return [["Face1: SelfIntersect"]]
 
@@ -195,6 +195,7 @@ def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeyp
     assert native.checks == len(module.REFITS) + 1
     assert region.error.kind == "stage" and region.error.stage == "fit"
     assert "SelfIntersect" in str(region.error)
+    assert region.smoothings and max(region.smoothings.values()) == 2 * module.STEPS
     assert region.quads is not None
     assert result.spline is None and result.native_shape is None
 

@@ -22,6 +22,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <map>
+#include <set>
 
 #include "trimquad/brep/occt_guard.h"
 
@@ -175,6 +176,29 @@ class Assembly {
   std::vector<TopoDS_Face> faces_;
 };
 
+/// The pairs of faces that share an edge, one of them at least among these; ascending.
+std::set<std::pair<int, int>> neighboursOf(const SplineModel& model, const std::vector<int>& faces) {
+  std::vector<std::vector<int>> users(model.edges.size());
+  for (int f = 0; f < int(model.faces.size()); ++f)
+    for (const auto& loop : model.faces[f].loops)
+      for (const auto& coedge : loop) users[coedge.edge.index].push_back(f);
+  std::set<std::pair<int, int>> result;
+  for (const int f : faces)
+    for (const auto& loop : model.faces.at(f).loops)
+      for (const auto& coedge : loop)
+        for (const int other : users[coedge.edge.index])
+          if (other != f) result.insert(std::minmax(f, other));
+  return result;
+}
+
+TopoDS_Compound compound(const std::vector<TopoDS_Face>& faces) {
+  TopoDS_Compound result;
+  BRep_Builder builder;
+  builder.MakeCompound(result);
+  for (const auto& face : faces) builder.Add(result, face);
+  return result;
+}
+
 }  // namespace
 
 Shape assemble(const SplineModel& model) {
@@ -201,11 +225,17 @@ std::vector<int> faceOrder(const SplineModel& model) {
   });
 }
 
-std::vector<std::vector<std::string>> faceFaults(const SplineModel& model) {
+std::vector<std::vector<std::string>> faceFaults(const SplineModel& model, const std::vector<int>& folded) {
   return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
     std::vector<std::vector<std::string>> result;
     const Assembly assembly(model);
     for (const auto& face : assembly.faces()) result.push_back(faults(Shape(face)));
+    const auto alone = result;
+    for (const auto& [a, b] : neighboursOf(model, folded)) {
+      if (!alone[a].empty() || !alone[b].empty()) continue;
+      const auto found = faults(Shape(compound({assembly.faces()[a], assembly.faces()[b]})));
+      for (const int face : {a, b}) result[face].insert(result[face].end(), found.begin(), found.end());
+    }
     return result;
   });
 }

@@ -10,6 +10,10 @@ namespace {
 /// around, quads.
 constexpr double kStiffens = 4, kStiffest = 1e5, kWidestSpot = 1;
 
+/// Factor of the fairness on a knot rectangle where the deviations around it are below the first part of the
+/// tolerance; its inverse where they are above the second.
+constexpr double kStiffensWithin = 4, kWell = 0.5, kClosely = 0.9;
+
 bool holds(const Fairness::Spot& spot, const FitPlace& x) {
   return spot.chart == x.chart && (spot.at - x.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
 }
@@ -56,6 +60,52 @@ bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<Surf
     };
     return staysNear(surface, a.parameter, side(b), side(c), region, distance);
   });
+}
+
+RectangleStiffness::RectangleStiffness(const std::vector<const SplineSpace*>& spaces,
+                                       const std::map<int, int>& steps)
+    : spaces_(spaces), steps_(steps) {
+  for (const SplineSpace* space : spaces)
+    factors_.emplace_back(std::size_t(space->u.spans()) * space->v.spans(), 1.0);
+}
+
+bool RectangleStiffness::update(const std::vector<SurfaceSample>& samples, double tolerance) {
+  std::vector<std::vector<double>> largest;  // deviations, by chart and rectangle
+  for (const auto& factors : factors_) largest.emplace_back(factors.size(), 0.0);
+  for (const auto& s : samples) {
+    const SplineLine &u = spaces_[s.chart]->u, &v = spaces_[s.chart]->v;
+    const std::size_t i = u.spanOf(s.parameter[0]), j = v.spanOf(s.parameter[1]);
+    double& here = largest[s.chart][i + u.spans() * j];
+    here = std::max(here, std::abs(s.distance));
+  }
+  bool any = false;
+  for (auto& [chart, left] : steps_) {
+    if (left == 0 || chart >= int(spaces_.size())) continue;
+    --left;
+    any = true;
+    updateChart(chart, largest[chart], tolerance);
+  }
+  return any;
+}
+
+void RectangleStiffness::updateChart(int chart, const std::vector<double>& largest, double tolerance) {
+  const SplineLine &u = spaces_[chart]->u, &v = spaces_[chart]->v;
+  const auto at = [&](int i, int j) {
+    if (u.closed) i = (i + u.spans()) % u.spans();
+    const bool inside = i >= 0 && i < u.spans() && j >= 0 && j < v.spans();
+    return inside ? largest[i + std::size_t(u.spans()) * j] : 0;
+  };
+  for (int j = 0; j < v.spans(); ++j)
+    for (int i = 0; i < u.spans(); ++i) {
+      double around = 0;
+      for (int dj = -1; dj <= 1; ++dj)
+        for (int di = -1; di <= 1; ++di) around = std::max(around, at(i + di, j + dj));
+      double& factor = factors_[chart][i + std::size_t(u.spans()) * j];
+      if (around <= kWell * tolerance)
+        factor *= kStiffensWithin;
+      else if (around > kClosely * tolerance)
+        factor = std::max(1.0, factor / kStiffensWithin);
+    }
 }
 
 void FoldSpots::update(const std::vector<FitPlace>& folds, const std::vector<FitPlace>& failing,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "trimquad/mesh/aabb_tree.h"
@@ -27,6 +28,25 @@ std::vector<std::array<int, 3>> cellsAround(const std::vector<std::array<int, 3>
 /// out.
 bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
               const std::vector<std::array<int, 3>>& cells, const TriangleTree& region, double distance);
+
+/// As much fairness on the knot rectangles of some charts as the tolerance allows: more where samples on one
+/// and around it are well within, less where they come close to it, but no less than without.
+class RectangleStiffness {
+ public:
+  /// \param spaces by chart  \param steps by chart: how often its fairness changes
+  RectangleStiffness(const std::vector<const SplineSpace*>& spaces, const std::map<int, int>& steps);
+  /// The next step. Whether there was one left.
+  bool update(const std::vector<SurfaceSample>& samples, double tolerance);
+  /// As Fairness::stiffness.
+  const std::vector<std::vector<double>>& factors() const { return factors_; }
+
+ private:
+  void updateChart(int chart, const std::vector<double>& largest, double tolerance);
+
+  std::vector<const SplineSpace*> spaces_;
+  std::map<int, int> steps_;  ///< left
+  std::vector<std::vector<double>> factors_;
+};
 
 /// Places of more fairness where surfaces are turned over in few places.
 class FoldSpots {

@@ -25,7 +25,10 @@ constexpr double kKink = 2e-3;
 /// Knots at these distances from singularities, where the surfaces bend from one sector's shape to the
 /// grid's.
 constexpr double kKnotsAround[] = {1, 2};
-constexpr double kOnLine = 1e-9;  ///< quads
+constexpr double kOnLine = 1e-9, kBeside = 1e-6;  ///< quads
+/// How much wider the knot intervals on one side of a border may be than on the other where surfaces are
+/// turned over.
+constexpr double kGrading = 1.5;
 
 /// A border as one of its charts sees it.
 struct BorderSide {
@@ -258,12 +261,41 @@ class LayoutFit : public FitRounds {
     }
   }
 
+  /// Next to a border across which the surfaces are smooth: where one side's knot intervals across it are
+  /// wider than the other's, that side cannot bend as the other one has to, and is to be refined.
+  void addWider(const FitPlace& x, std::set<std::tuple<int, int, int>>& wider) const {
+    const auto& own = space_.charts[x.chart];
+    for (const auto& side : sides_[x.chart]) {
+      const int over = side.along[0] != 0 ? 1 : 0;
+      const double depth = (x.parameter - side.start).dot(side.inward),
+                   s = (x.parameter - side.start).dot(side.along);
+      if (side.border->feature || s < 0 || s > side.length || depth < -kOnLine) continue;
+      const Eigen::Vector2d on = side.start + s * side.along;
+      const Eigen::Vector2d here = on + kBeside * side.inward, before = on - kBeside * side.inward;
+      const Eigen::Vector2d there = Layout::apply(side.over, layout_.scale, before);
+      const SplineLine& line = over == 0 ? own.u : own.v;
+      const int span = line.spanOf(here[over]);
+      const int axis = side.over.rotation % 2 == 0 ? over : 1 - over;
+      const auto& neighbour = space_.charts[side.neighbour];
+      const SplineLine& theirs = axis == 0 ? neighbour.u : neighbour.v;
+      const int beyond = theirs.spanOf(there[axis]);
+      if (depth > std::max(line.width(span), theirs.width(beyond))) continue;
+      if (theirs.width(beyond) > kGrading * line.width(span))
+        wider.insert({side.neighbour, axis, beyond});
+      else if (line.width(span) > kGrading * theirs.width(beyond))
+        wider.insert({x.chart, over, span});
+    }
+  }
+
   bool insertKnots() override {
     std::vector<std::vector<Eigen::Vector2d>> failingIn(space_.charts.size());
     for (const auto& x : failing_) failingIn[x.chart].push_back(x.parameter);
     std::set<std::tuple<int, int, int>> coarser;  // chart, axis, span
     for (const auto& x : failing_) addCoarser(x, 0.75, coarser);
-    for (const auto& x : turned_) addCoarser(x, 1.5, coarser);
+    for (const auto& x : turned_) {
+      addCoarser(x, kGrading, coarser);
+      if (smoothings_.count(x.chart)) addWider(x, coarser);
+    }
     std::vector<std::tuple<int, int, double>> middles;
     for (const auto& [chart, axis, span] : coarser) {
       const SplineLine& line = axis == 0 ? space_.charts[chart].u : space_.charts[chart].v;

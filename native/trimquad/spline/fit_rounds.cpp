@@ -73,6 +73,7 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       enough_(std::max(options.tolerance, options.enough)),
       threads_(options.threads),
       progress_(progress),
+      smoothings_(options.smoothings),
       triangles_(triangleTree(region.mesh)),
       policy_(policy),
       slides_(options.slides && !policy.several) {}
@@ -89,7 +90,7 @@ void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
 
 FittedSurface FitRounds::run() try { return rounds(); } catch (const Error& error) {
   if (!kept_ || error.kind() != Error::Kind::Stage) throw;
-  return std::move(*kept_);
+  return std::move(smooth_ ? *smooth_ : *kept_);
 }
 
 FittedSurface FitRounds::rounds() {
@@ -101,8 +102,12 @@ FittedSurface FitRounds::rounds() {
     if (rounds_ == 1) start_ = best_ = deviation_.max;
     best_ = std::min(best_, deviation_.max);
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
-    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0))
-      return economised();
+    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0)) {
+      if (smoothings_.empty()) return economised();
+      kept_ = result_;
+      smoothChosen();
+      return std::move(smooth_ ? *smooth_ : *kept_);
+    }
     keepIfEnough();
     if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
     stiffenFolds();
@@ -297,10 +302,38 @@ void FitRounds::keepIfEnough() {
   const auto failing = failing_;
   const auto turned = turned_;
   if (verified(enough_, kSmallFolds) &&
-      (!kept_ || result_.folded.empty() || result_.folded.size() < kept_->folded.size()))
+      (!kept_ || result_.folded.empty() || result_.folded.size() < kept_->folded.size())) {
     kept_ = result_;
+    smoothChosen();
+  }
   failing_ = failing;
   turned_ = turned;
+}
+
+/// Of the surfaces kept last, those that are smooth in the charts chosen for that, if they lie within what is
+/// enough. All else is left as it was, so that the surfaces of the other charts come out as without.
+void FitRounds::smoothChosen() {
+  smooth_.reset();
+  if (smoothings_.empty()) return;
+  const State before = state();
+  const auto emphasis = emphasis_;
+  const auto turned = turned_, folds = folds_;
+  const Deviation previous = previous_;
+  std::vector<const SplineSpace*> spaces;
+  for (int c = 0; c < charts(); ++c) spaces.push_back(&space(c));
+  RectangleStiffness stiffness(spaces, smoothings_);
+  while (stiffness.update(samples_, tolerance_)) {
+    fairness_.stiffness = stiffness.factors();
+    unfold(deviation_.turnedOver);
+    solve();
+    if (deviation_.max <= enough_ && verified(enough_, kSmallFolds)) smooth_ = result_;
+  }
+  fairness_.stiffness.clear();
+  restore(before);
+  emphasis_ = emphasis;
+  turned_ = turned;
+  folds_ = folds;
+  previous_ = previous;
 }
 
 /// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
@@ -368,10 +401,10 @@ bool FitRounds::verified(double tolerance, double folds) {
   result_.folded.clear();
   folds_.clear();
   for (const int i : found.turnedOver) {
-    result_.folded.push_back(control[i].point);
+    result_.folded.push_back({control[i].point, feet[i].chart});
     folds_.push_back(feet[i]);
   }
-  for (const int i : deviation_.turnedOver) result_.folded.push_back(samples_[i].point);
+  for (const int i : deviation_.turnedOver) result_.folded.push_back({samples_[i].point, feet_[i].chart});
   result_.samples = int(control.size() + samples_.size());
   if (found.max <= tolerance && double(found.turnedOver.size()) <= folds * double(control.size()))
     return true;

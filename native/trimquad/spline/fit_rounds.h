@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -70,6 +71,7 @@ class FitRounds {
   const double tolerance_, enough_;
   const int threads_;
   const Progress& progress_;
+  const std::map<int, int> smoothings_;  ///< by chart
   FittedSurface result_;
   std::vector<SurfaceSample> samples_;
   std::vector<std::array<int, 3>> cells_;
@@ -102,6 +104,7 @@ class FitRounds {
   void unfold(const std::vector<int>& turnedOver);
   void chooseParameters();
   void keepIfEnough();
+  void smoothChosen();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
   bool verified(double tolerance, double folds);
   std::vector<ChartDeviation> deviationsByChart(const std::vector<SurfaceSample>& control,
@@ -123,7 +126,8 @@ class FitRounds {
 
   const TriangleTree triangles_;  ///< of the region
   const Policy policy_;
-  std::optional<FittedSurface> kept_;  ///< within what is enough
+  std::optional<FittedSurface> kept_;    ///< within what is enough
+  std::optional<FittedSurface> smooth_;  ///< the same, smoothed
   FoldSpots foldSpots_;
   Deviation deviation_, previous_;
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over

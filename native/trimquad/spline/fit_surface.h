@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+
 #include "trimquad/base/progress.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/spline/chart.h"
@@ -16,6 +18,9 @@ struct FitOptions {
   /// Charts to cut in two, again and again: by round, indices of the layout of the round before. Regions for
   /// one chart are cut as chart 0.
   std::vector<std::vector<int>> bisections = {};
+  /// By chart at fault, an index of the layout: in how many steps its surface is made smoother, as `enough`
+  /// allows. Where it is turned over next to a border, the knots on both sides are made alike.
+  std::map<int, int> smoothings = {};
   int degree = 3;  ///< 2..5
   /// Whether points of the region may slide along a single surface, which needs the fewest poles, as long as
   /// it folds over nowhere.
@@ -41,7 +46,11 @@ struct FittedSurface {
   std::vector<ChartDeviation> deviations;     ///< by chart, one where there is a single surface
   /// Samples, those of the fit and independent ones, where a surface is turned over in a small fold, though
   /// it lies within the tolerance there; and how many samples there are.
-  std::vector<Eigen::Vector3d> folded;
+  struct Fold {
+    Eigen::Vector3d point;
+    int chart;  ///< 0 where there is a single surface
+  };
+  std::vector<Fold> folded;
   int samples = 0;
   int rounds = 0;
 };

@@ -447,10 +447,9 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
   const auto corners = singularCorners();
   for (std::size_t c = 0; c < charts.size(); ++c) {
     progress.check();
-    Fairness here = fairness;
+    Fairness here = fairness.ofChart(int(c));
     here.stiffAt = corners[c];
     here.stiffReach = stiffReach;
-    std::erase_if(here.spots, [&](const Fairness::Spot& spot) { return spot.chart != int(c); });
     charts[c].addNormalEquations(data[c], here, middle, offset[c], entries, rhs);
   }
   const auto rows = conditions();

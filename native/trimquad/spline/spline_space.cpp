@@ -171,6 +171,19 @@ double Fairness::weight(const SplineLine& u, int i, const SplineLine& v, int j, 
   for (const auto& spot : spots)
     if ((spot.at - spot.at.cwiseMax(low).cwiseMin(high)).lpNorm<Eigen::Infinity>() < spot.reach)
       result = std::max(result, spot.factor * withData);
+  if (!stiffness.empty()) result *= stiffness[0][i + std::size_t(u.spans()) * j];
+  return result;
+}
+
+Fairness Fairness::ofChart(int chart) const {
+  Fairness result = *this;
+  result.spots.clear();
+  for (Spot spot : spots)
+    if (spot.chart == chart) {
+      spot.chart = 0;
+      result.spots.push_back(spot);
+    }
+  if (!stiffness.empty()) result.stiffness = {stiffness[chart]};
   return result;
 }
 

@@ -57,7 +57,11 @@ struct Fairness {
     double factor;
   };
   std::vector<Spot> spots = {};
+  /// By chart and knot rectangle, (i, j) at i + u.spans() * j: factor of the weight. Empty: none.
+  std::vector<std::vector<double>> stiffness = {};
 
+  /// What concerns one chart, as its chart 0.
+  Fairness ofChart(int chart) const;
   /// Weight of the energy on a knot rectangle.
   double weight(const SplineLine& u, int i, const SplineLine& v, int j, bool hasData) const;
   bool isStiff(const SplineLine& u, int i, const SplineLine& v, int j) const;

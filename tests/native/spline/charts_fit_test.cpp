@@ -64,6 +64,41 @@ TEST(ChartsFit, wavySheetOfFiveChartsWithStaggeredTJoints) {
   }
 }
 
+/// Mean of the thin-plate energy's density.
+double bending(const SplineSurface& s) {
+  constexpr int n = 200;
+  double sum = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const auto jet = s.jet(s.firstU() + (s.lastU() - s.firstU()) * (i + 0.5) / n,
+                             s.firstV() + (s.lastV() - s.firstV()) * (j + 0.5) / n);
+      sum += jet.suu.squaredNorm() + 2 * jet.suv.squaredNorm() + jet.svv.squaredNorm();
+    }
+  return sum / (n * n);
+}
+
+TEST(ChartsFit, chosenChartsComeOutSmootherWithinTheTolerance) {
+  const auto sheet = wavySheet(31);
+  FitOptions options{.tolerance = 3e-3, .enough = 1e-2, .bisections = {{0}, {0}, {2}, {2}}};
+  const auto plain = fitSurface(sheet.region, sheet.map, options, Progress());
+  options.smoothings = {{1, 4}};
+  const auto smooth = fitSurface(sheet.region, sheet.map, options, Progress());
+  const auto f = figures(smooth, sheet.region, sheet.map);
+  EXPECT_LE(f.max, options.enough);
+  EXPECT_LE(f.gap, 1e-14);
+  EXPECT_LT(bending(smooth.surfaces[1]), bending(plain.surfaces[1]));
+  const auto largestChange = [&](int chart) {
+    double largest = 0;
+    for (std::size_t i = 0; i < plain.surfaces[chart].poles.size(); ++i)
+      largest = std::max(largest, (plain.surfaces[chart].poles[i] - smooth.surfaces[chart].poles[i]).norm());
+    return largest;
+  };
+  for (const int other : {0, 2, 3, 4}) {
+    ASSERT_EQ(plain.surfaces[other].poles.size(), smooth.surfaces[other].poles.size());
+    EXPECT_LT(largestChange(other), largestChange(1));
+  }
+}
+
 /// The dome of radius 5 that reaches 75 degrees down from its top, where `quarters` sectors meet. The map
 /// keeps the shape of small figures at the top.
 /// \param radius of the dome's image, quads

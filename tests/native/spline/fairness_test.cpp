@@ -38,6 +38,19 @@ TEST(Fairness, countsOnNarrowRectanglesByTheirAreaAndByItsFactorInSpots) {
   EXPECT_DOUBLE_EQ(fairness.weight(space.u, 4, space.v, 6, true), 2 * narrow);
 }
 
+TEST(Fairness, ofAChartHasItsSpotsAndItsStiffnessOnly) {
+  const SplineSpace space = square(2, 1);
+  Fairness fairness{2, 3};
+  fairness.spots = {{1, {0.5, 0.5}, 0.1, 5}};
+  fairness.stiffness = {{1, 1, 1, 1}, {1, 1, 1, 7}};
+  const Fairness first = fairness.ofChart(0), second = fairness.ofChart(1);
+  EXPECT_DOUBLE_EQ(first.weight(space.u, 0, space.v, 0, true), 2);
+  EXPECT_DOUBLE_EQ(first.weight(space.u, 1, space.v, 1, true), 2);
+  EXPECT_DOUBLE_EQ(second.weight(space.u, 0, space.v, 0, true), 10);
+  EXPECT_DOUBLE_EQ(second.weight(space.u, 1, space.v, 1, true), 14);
+  EXPECT_DOUBLE_EQ(second.weight(space.u, 1, space.v, 1, false), 21);
+}
+
 TEST(Fairness, inASpotUnfoldsASurfaceWhoseDataChangedPlacesAndLeavesTheRestAlone) {
   const double side = 4;
   const SplineSpace space = square(16, 0.25);

@@ -97,6 +97,32 @@ TEST(FitFolds, spotsGrowStifferWhileTheyFoldAndGiveWayWhereTheyFail) {
   EXPECT_FALSE(spots.coverFolds());
 }
 
+TEST(FitFolds, fairnessGrowsOnTheChosenChartsUntilItsStepsAreDoneOrTheToleranceComesClose) {
+  SplineLine line;
+  for (int i = 0; i <= 8; ++i) line.breaks.push_back(i);
+  const SplineSpace space{line, line};
+  std::vector<SurfaceSample> samples;
+  for (const int chart : {0, 1})
+    for (int i = 0; i < 8; ++i) {
+      auto& s = samples.emplace_back();
+      s.chart = chart;
+      s.parameter = {i + 0.5, 4.5};
+      s.distance = i == 7 ? 0.95 : 0.1;
+    }
+  RectangleStiffness stiffness({&space, &space}, {{1, 2}});
+  EXPECT_TRUE(stiffness.update(samples, 1));
+  EXPECT_TRUE(stiffness.update(samples, 1));
+  const auto chosen = stiffness.factors()[1];
+  const auto at = [&](int i, int j) { return chosen[i + 8 * j]; };
+  EXPECT_EQ(at(0, 0), 16) << "where there are no samples too";
+  EXPECT_EQ(at(3, 4), 16);
+  EXPECT_EQ(at(7, 4), 1);
+  EXPECT_EQ(at(6, 5), 1) << "next to a rectangle where the tolerance is close";
+  EXPECT_EQ(stiffness.factors()[0], std::vector<double>(64, 1.0));
+  EXPECT_FALSE(stiffness.update(samples, 1));
+  EXPECT_EQ(stiffness.factors()[1], chosen);
+}
+
 TEST(FitFolds, whereKnotIntervalsAreWideThereAreNoSpots) {
   FoldSpots spots;
   spots.update({{0, {3, 3}}}, {}, [](const FitPlace&) { return 2.0; });
