@@ -64,8 +64,8 @@ void bindSpline(py::module_& m) {
                        std::vector<std::vector<int>> bisections, std::map<int, int> smoothings, int degree,
                        bool slides, int threads) {
              return FitOptions{
-                 tolerance, enough, smallestRectangle, std::move(bisections), std::move(smoothings),
-                 degree,    slides, threads};
+                 tolerance, enough, smallestRectangle, std::move(bisections), std::move(smoothings), degree,
+                 slides,    threads};
            }),
            py::kw_only(), py::arg("tolerance"), py::arg("enough"), py::arg("smallest_rectangle"),
            py::arg("bisections"), py::arg("smoothings"), py::arg("degree"), py::arg("slides"),

@@ -135,7 +135,7 @@ class FitRounds {
   std::vector<double> emphasis_;        ///< by sample: factor of its weight
   State beforeCorrection_;
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
-  bool slides_;                 ///< samples whose parameters are their feet, along the surface
+  bool slides_;            ///< samples whose parameters are their feet, along the surface
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0;
