@@ -87,7 +87,7 @@ def _lines(polygons):
 
 def _faces(result):
     shape = shape_from_bytes(load().shape_to_freecad(result.native_shape))
-    chord = result.model.diagonal / 400
+    chord = result.model.diagonal / 1500
     faces, segments = [], []
     for index, face in enumerate(shape.Faces):
         points, triangles = face.tessellate(chord)

@@ -79,9 +79,8 @@ void bindBrep(py::module_& m) {
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
   m.def("face_faults", &faceFaults, py::arg("spline"), py::arg("folded"), Released(),
-        "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone, and with "
-        "those "
-        "in `folded` (indices) together with each neighbour");
+        "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone; with those "
+        "in `folded` (indices) also together with each neighbour");
   m.def("face_order", &faceOrder, py::arg("spline"), Released(),
         "by face of the assembled shape, its index among the spline's");
   m.def("deviation_maps", &deviationMapsOf, py::arg("spline"), py::arg("regions"), py::kw_only(),
