@@ -1,5 +1,9 @@
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <complex>
+#include <numeric>
 
 #include "trimquad/base/error.h"
 #include "trimquad/seamless/convex_start.h"
@@ -12,16 +16,20 @@ namespace {
 /// Radius of the frame over half the length of the outer loop, which no map without distortion reaches
 /// beyond.
 constexpr double kFrameRoom = 1.2;
+/// Width of a collar around the outer loop, quads, and the weight of its area beside the region's: where the
+/// boundary comes close to itself, a surface has to get from one side to the other in between.
+constexpr double kCollar = 0.5, kCollarWeight = 0.1;
 constexpr int kRounds = 100, kStepsPerRound = 4;
 constexpr double kScaffoldWeight = 1e-2;  ///< of the region's energy, for the scaffold as a whole
 /// Least relative decrease of the energy in a round, and rounds in a row that may stay below it.
 constexpr double kWorthARound = 2e-3;
 constexpr int kPatience = 3;
 
-/// A plane region with its holes filled by a fan each and its outer loop surrounded by rings; positions in
-/// the plane.
+/// A plane region with a collar and rings around its outer loop, and its other holes filled by a fan each;
+/// positions in the plane.
 struct Frame {
   TriangleSoup soup;  // the region's triangles first; points are not used but for their number
+  MapTarget collar;   ///< of the triangles that follow, next to the outer loop
   std::vector<Eigen::Vector2d> position;
   std::vector<int> outermost;  ///< vertices of the last ring
   /// The basis holds vertex 0 at the origin. That must be one of the outermost ring, which does not move
@@ -45,50 +53,73 @@ std::vector<double> ringGrowths(double radius, double outerLoop) {
   return growths;
 }
 
-/// \param outerLoop length of the outer loop without distortion, quads
-Frame frameAround(const SurfaceMesh& mesh, int outer, double outerLoop,
+/// Length of a boundary edge in the target, quads.
+double lengthOf(const SurfaceMesh& mesh, const MapTarget& target, HalfedgeHandle boundary) {
+  const HalfedgeHandle inner = mesh.opposite_halfedge_handle(boundary);
+  const FaceHandle f = mesh.face_handle(inner);
+  int k = 0;
+  for (HalfedgeHandle at = mesh.halfedge_handle(f); at != inner; at = mesh.next_halfedge_handle(at)) ++k;
+  return (target[f.idx()][(k + 1) % 3] - target[f.idx()][k]).norm();
+}
+
+using Loop = std::vector<HalfedgeHandle>;
+
+/// Collar and rings of ever larger triangles around the circle on which the outer loop lies.
+void surround(const SurfaceMesh& mesh, const Loop& loop, const MapTarget& target, Frame& frame) {
+  const int n = int(loop.size());
+  std::vector<int> ring(n);
+  std::vector<double> length(n);
+  for (int i = 0; i < n; ++i) {
+    ring[i] = mesh.from_vertex_handle(loop[i]).idx();
+    length[i] = lengthOf(mesh, target, loop[i]);
+  }
+  const double around = std::accumulate(length.begin(), length.end(), 0.0);
+  for (const double growth : ringGrowths(frame.position[ring[0]].norm(), around)) {
+    std::vector<int> next(n);
+    for (int i = 0; i < n; ++i) {
+      next[i] = int(frame.position.size());
+      const Eigen::Vector2d p = growth * frame.position[ring[i]];
+      frame.position.push_back(p);
+    }
+    const bool isCollar = frame.collar.empty();
+    for (int i = 0; i < n; ++i) {
+      const int j = (i + 1) % n;
+      frame.soup.triangles.push_back({ring[i], ring[j], next[j]});
+      frame.soup.triangles.push_back({ring[i], next[j], next[i]});
+      if (!isCollar) continue;
+      const Eigen::Vector2d a(0, 0), b(length[i], 0), up(0, kCollar);
+      frame.collar.push_back({a, b, b + up});
+      frame.collar.push_back({a, b + up, a + up});
+    }
+    ring = next;
+  }
+  frame.outermost = ring;
+}
+
+void fill(const SurfaceMesh& mesh, const Loop& loop, Frame& frame) {
+  const int centre = int(frame.position.size());
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const auto h : loop) mean += frame.position[mesh.from_vertex_handle(h).idx()] / double(loop.size());
+  frame.position.push_back(mean);
+  for (const auto h : loop)
+    frame.soup.triangles.push_back(
+        {mesh.from_vertex_handle(h).idx(), mesh.to_vertex_handle(h).idx(), centre});
+}
+
+Frame frameAround(const SurfaceMesh& mesh, int outer, const MapTarget& target,
                   std::vector<Eigen::Vector2d> position) {
   Frame result;
+  result.position = std::move(position);
   for (const auto f : mesh.faces()) result.soup.triangles.push_back(corners(mesh, f));
   const auto loops = boundaryLoops(mesh);
-  for (int l = 0; l < int(loops.size()); ++l) {
-    const auto& loop = loops[l];
-    if (l != outer) {
-      const int centre = int(position.size());
-      Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-      for (const auto h : loop) mean += position[mesh.from_vertex_handle(h).idx()] / double(loop.size());
-      position.push_back(mean);
-      for (const auto h : loop)
-        result.soup.triangles.push_back(
-            {mesh.from_vertex_handle(h).idx(), mesh.to_vertex_handle(h).idx(), centre});
-      continue;
-    }
-    // Rings of ever larger triangles around the circle on which the outer loop lies.
-    const int n = int(loop.size());
-    std::vector<int> ring(n);
-    for (int i = 0; i < n; ++i) ring[i] = mesh.from_vertex_handle(loop[i]).idx();
-    for (const double growth : ringGrowths(position[ring[0]].norm(), outerLoop)) {
-      std::vector<int> next(n);
-      for (int i = 0; i < n; ++i) {
-        next[i] = int(position.size());
-        const Eigen::Vector2d p = growth * position[ring[i]];
-        position.push_back(p);
-      }
-      for (int i = 0; i < n; ++i) {
-        const int j = (i + 1) % n;
-        result.soup.triangles.push_back({ring[i], ring[j], next[j]});
-        result.soup.triangles.push_back({ring[i], next[j], next[i]});
-      }
-      ring = next;
-    }
-    result.outermost = ring;
-  }
+  surround(mesh, loops[outer], target, result);
+  for (int l = 0; l < int(loops.size()); ++l)
+    if (l != outer) fill(mesh, loops[l], result);
   result.zero = result.outermost.front();
   for (auto& triangle : result.soup.triangles)
     for (int& v : triangle) v = result.number(v);
   for (int& v : result.outermost) v = result.number(v);
-  std::swap(position[0], position[result.zero]);
-  result.position = std::move(position);
+  std::swap(result.position[0], result.position[result.zero]);
   for (const auto& p : result.position) result.soup.points.emplace_back(p.x(), p.y(), 0);
   return result;
 }
@@ -106,7 +137,22 @@ double cotangent(const Eigen::Vector2d& at, const Eigen::Vector2d& a, const Eige
 class ScaffoldedMap {
  public:
   ScaffoldedMap(const Frame& frame, const MapTarget& target)
-      : mesh_(buildSurfaceMesh(frame.soup)), target_(target), position_(frame.position) {
+      : mesh_(buildSurfaceMesh(frame.soup)),
+        regionFaces_(int(target.size())),
+        target_(target),
+        position_(frame.position) {
+    target_.insert(target_.end(), frame.collar.begin(), frame.collar.end());
+    for (int f = 0; f < int(target_.size()); ++f) {
+      // The mesh may have another corner of the triangle first.
+      const auto& corner = frame.soup.triangles[f];
+      const int first = corners(mesh_, mesh_.face_handle(f))[0];
+      std::rotate(target_[f].begin(),
+                  target_[f].begin() + (std::find(corner.begin(), corner.end(), first) - corner.begin()),
+                  target_[f].end());
+    }
+    for (const auto& corner : frame.collar)
+      collarWeight_ +=
+          kCollarWeight * doubleArea(corner[0], corner[1], corner[2]) / 2 / double(frame.collar.size());
     isOutermost_.assign(mesh_.n_vertices(), 0);
     for (const int v : frame.outermost) isOutermost_[v] = 1;
   }
@@ -135,8 +181,8 @@ class ScaffoldedMap {
     }
   }
 
-  /// Newton steps on the region's energy. The scaffold's target is its present shape, so that it yields but
-  /// never folds. Gives the energy before.
+  /// Newton steps on the energy of region and collar. The scaffold's target is its present shape, so that it
+  /// yields but never folds. Gives the region's energy before.
   template <class Step>
   double improve(double follow, const Step& step) {
     SeamGraph none;
@@ -144,10 +190,15 @@ class ScaffoldedMap {
     const SeamBasis basis(mesh_, none, {});
     MapEnergy energy(mesh_, wholeTarget(), basis);
     Eigen::VectorXd x = coordinates(basis);
-    energy.setScaffold(regionFaces(), 0);
+    if (follow > 0) {
+      turnTarget(energy, x);
+      energy.aim(wholeTarget());
+    }
+    energy.setScaffold(regionFaces_, 0);
     const double regionEnergy = energy.value(x, symmetricDirichlet, follow);
-    energy.setScaffold(regionFaces(),
-                       kScaffoldWeight * regionEnergy / (4.0 * double(mesh_.n_faces() - regionFaces())));
+    energy.setScaffold(regionFaces_, collarWeight_);
+    energy.setScaffold(firstScaffold(),
+                       kScaffoldWeight * regionEnergy / (4.0 * double(mesh_.n_faces() - firstScaffold())));
     Eigen::VectorXd z = basis.basis().restrict(x);
     const std::vector<int> held = heldUnknowns(basis);
     for (int i = 0; i < kStepsPerRound; ++i) {
@@ -172,12 +223,13 @@ class ScaffoldedMap {
     }
     return count;
   }
-  const Eigen::Vector2d& position(int vertex) const { return position_[vertex]; }
+  /// In the plane of the target as it was given.
+  Eigen::Vector2d position(int vertex) const { return turned_.inverse() * position_[vertex]; }
 
  private:
-  int regionFaces() const { return int(target_.size()); }
+  int firstScaffold() const { return int(target_.size()); }
   bool isScaffold(HalfedgeHandle h) const {
-    return !mesh_.is_boundary(h) && mesh_.face_handle(h).idx() >= regionFaces();
+    return !mesh_.is_boundary(h) && mesh_.face_handle(h).idx() >= firstScaffold();
   }
   const Eigen::Vector2d& apex(HalfedgeHandle h) const {
     return position_[mesh_.to_vertex_handle(mesh_.next_halfedge_handle(h)).idx()];
@@ -195,10 +247,23 @@ class ScaffoldedMap {
     return doubleArea(a, d, c) > size * 1e-3 && doubleArea(b, c, d) > size * 1e-3;
   }
 
+  /// So that the map as a whole need not turn to follow the target: the scaffold would turn slowly.
+  void turnTarget(const MapEnergy& energy, const Eigen::VectorXd& x) {
+    std::complex<double> sum = 0;
+    for (int f = 0; f < regionFaces_; ++f) {
+      const auto j = energy.jacobian(f, x);
+      sum += doubleArea(target_[f][0], target_[f][1], target_[f][2]) * std::complex(j.fzReal, j.fzImag);
+    }
+    const Eigen::Rotation2Dd turn(std::arg(sum));
+    for (int f = 0; f < regionFaces_; ++f)
+      for (auto& corner : target_[f]) corner = turn * corner;
+    turned_ = turned_ * turn;
+  }
+
   MapTarget wholeTarget() const {
     MapTarget whole = target_;
     for (const auto f : mesh_.faces()) {
-      if (f.idx() < regionFaces()) continue;
+      if (f.idx() < firstScaffold()) continue;
       const auto [a, b, c] = corners(mesh_, f);
       whole.push_back({position_[a], position_[b], position_[c]});
     }
@@ -228,24 +293,14 @@ class ScaffoldedMap {
   }
 
   SurfaceMesh mesh_;
-  const MapTarget& target_;  ///< of the region
+  int regionFaces_;
+  double collarWeight_ = 0;  ///< of a triangle
+  MapTarget target_;         ///< of region and collar
   std::vector<Eigen::Vector2d> position_;
   std::vector<char> isOutermost_;
+  Eigen::Rotation2Dd turned_{0};  ///< the target
   SparseSolver solver_{"seamless"};
 };
-
-/// Length of a loop in the target, quads.
-double lengthOf(const SurfaceMesh& mesh, const MapTarget& target, const std::vector<HalfedgeHandle>& loop) {
-  double length = 0;
-  for (const auto h : loop) {
-    const HalfedgeHandle inner = mesh.opposite_halfedge_handle(h);
-    const FaceHandle f = mesh.face_handle(inner);
-    int k = 0;
-    for (HalfedgeHandle at = mesh.halfedge_handle(f); at != inner; at = mesh.next_halfedge_handle(at)) ++k;
-    length += (target[f.idx()][(k + 1) % 3] - target[f.idx()][k]).norm();
-  }
-  return length;
-}
 
 }  // namespace
 
@@ -265,8 +320,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
     if (!mesh.is_boundary(h))
       for (int axis = 0; axis < 2; ++axis)
         position[mesh.from_vertex_handle(h).idx()][axis] = (*start)[basis.coordinate(basis.wedge(h), axis)];
-  const auto outer = boundaryLoops(mesh)[*seams.outerLoop];
-  const Frame frame = frameAround(mesh, *seams.outerLoop, lengthOf(mesh, target, outer), std::move(position));
+  const Frame frame = frameAround(mesh, *seams.outerLoop, target, std::move(position));
   ScaffoldedMap map(frame, target);
   if (map.turnedOver() > 0)
     throw stageError("seamless",

@@ -126,6 +126,35 @@ TEST(GridMap, spiralRampIsUnrolledWithoutCoveringThePlaneTwice) {
   EXPECT_FALSE(boundaryTouchesItself(map));
 }
 
+/// Least distance between parts of the boundary's image that lie far apart along it, quads.
+double narrowestGap(const SeamlessMap& map) {
+  std::vector<Eigen::Vector2d> points;
+  const auto loop = boundaryLoops(map.mesh).front();
+  for (const auto h : loop)
+    points.push_back(
+        map.scale.toQuads(map.from(map.mesh.next_halfedge_handle(map.mesh.opposite_halfedge_handle(h)))));
+  const int n = int(points.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < n; ++i)
+    for (int j = i + n / 4; j < n && j - i < n - n / 4; ++j)
+      least = std::min(least, (points[i] - points[j]).norm());
+  return least;
+}
+
+TEST(GridMap, rampThatJustOverlapsIsBentApartALittle) {
+  // Developed, the ramp turns by a full turn and a twentieth. Its ends are to stay so far apart that a
+  // surface can get from one to the other.
+  const Region r = sample::region(sample::sheet(120, 16, [](double s, double t) {
+    const double a = 2.1 * M_PI * s, radius = 2 - t;
+    return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), 0.1 * a);
+  }));
+  const SeamlessMap map = seamlessMap(r, fieldOf(r), 0.1, Effort::Full, Progress());
+  EXPECT_TRUE(map.counters.scaffolded);
+  EXPECT_FALSE(boundaryTouchesItself(map));
+  EXPECT_LT(map.counters.distortionEnd, 4.01);
+  EXPECT_GT(narrowestGap(map), 0.3);
+}
+
 TEST(GridMap, whatCannotBeUnrolledWithoutGreatDistortionStaysAsItIs) {
   // A cone of five turns around nearly its apex: one sheet without overlap would be torn out of shape.
   const Region r = sample::region(sample::sheet(400, 12, [](double s, double t) {
