@@ -15,7 +15,7 @@ namespace trimquad {
 namespace {
 
 /// How much more a map may be distorted so that it covers no part of the plane twice.
-constexpr double kWorthOneSurface = 3;
+constexpr double kWorthOneSurface = 2;
 
 MapTarget mapTarget(const SurfaceMesh& mesh, const CrossField& field, const std::vector<int>& combing,
                     double edgeLength) {
