@@ -4,8 +4,9 @@ from typing import List, NamedTuple, Tuple
 from .error import Error
 from .native import load
 
-# Times that a region and its parts are cut: around the CAD faces where it fails, then between all faces.
-MOST_CUTS = 2
+# How a region is cut, then parts of it that fail: where it bends sharply, though at no edge, around the CAD faces at the
+# place where it fails, between all faces.
+CUTS = ("creases", "place", "faces")
 
 
 class Cut(NamedTuple):
@@ -38,24 +39,26 @@ def cut_failed(result, progress) -> List[Tuple[int, object]]:
     for index, item in enumerate(result.regions):
         if item.error is not None and item.error.kind == "stage" and item.cuts_left:
             found = _parts(item, index, result, progress)
-            item.cuts_left -= 1
-            if found is None:
-                item.cuts_left = 0
-            else:
+            if found is not None:
                 parts[index] = found
     return result.replace_by_parts(parts) if parts else []
 
 
 def _parts(item, index, result, progress):
     """Those of the next cut, or None where there is none."""
-    places = [None]
-    if item.cuts_left == MOST_CUTS and item.error.position is not None:
-        places.insert(0, item.error.position)
-    for place in places:
+    while item.cuts_left:
+        way = CUTS[-item.cuts_left]
+        item.cuts_left -= 1
+        place = item.error.position if way == "place" else None
+        if way == "place" and place is None:
+            continue
         try:
             with progress.stage("cut", item.name) as native_progress:
-                return load().region_parts(result.model, index, place, native_progress)
+                parts = load().region_parts(result.model, index, place, way == "creases", native_progress)
         except Error as error:
             if error.kind == "cancelled":
                 raise
+            continue
+        if parts is not None:
+            return parts
     return None

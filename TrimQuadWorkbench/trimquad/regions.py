@@ -5,7 +5,7 @@ from typing import NamedTuple, Tuple
 
 import numpy
 
-from .cuts import MOST_CUTS, cut_failed
+from .cuts import CUTS, cut_failed
 from .error import Error, system_error
 from .native import load
 from .polygons import Polygons
@@ -50,7 +50,7 @@ class RegionResult:
     name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
     fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds, those of
     attempts that failed included;
-    cut_from: name of the region that it is a part of, None for a whole; cuts_left: how often it may be cut if it fails;
+    cut_from: name of the region that it is a part of, None for a whole; cuts_left: how many ways of cutting it are left if it fails;
     holes: what became of boundary loops shorter than `fill_holes`; bridged: the region with its holes bridged, which
     field, seamless and tmesh are of (the region itself where no hole is).
     """
@@ -72,7 +72,7 @@ class RegionResult:
         self.seconds = {}
         self.cut_from = None
         self.fitted_closer = False
-        self.cuts_left = MOST_CUTS
+        self.cuts_left = len(CUTS)
 
     @property
     def has_creases(self):

@@ -70,11 +70,16 @@ void bindBrep(py::module_& m) {
   py::class_<RegionParts>(m, "RegionParts")
       .def_property_readonly("count", [](const RegionParts& parts) { return parts.model.regions.size(); })
       .def_readonly("edges", &RegionParts::edges, "names of the edges that were cut");
-  m.def("region_parts", &regionParts, py::arg("model"), py::arg("region"), py::arg("place"),
-        py::arg("progress"), Released(),
-        "A region cut along its smooth inner edges: around the CAD faces at `place`, or between all faces "
-        "where it "
-        "is None. None where there is nothing to cut.");
+  m.def(
+      "region_parts",
+      [](const Model& model, int region, const std::optional<Eigen::Vector3d>& place, bool creases,
+         const Progress& progress) {
+        return regionParts(model, region, {creases, place}, progress);
+      },
+      py::arg("model"), py::arg("region"), py::arg("place"), py::arg("creases"), py::arg("progress"),
+      Released(),
+      "A region cut along its smooth inner edges: with `creases` those where it bends sharply, else around "
+      "the CAD faces at `place`, or between all faces where it is None. None where there is nothing to cut.");
   m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());

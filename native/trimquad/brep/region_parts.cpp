@@ -46,6 +46,18 @@ class InnerEdges {
       if (!foreign.count(edge)) edges_.push_back({edge, std::move(sides)});
   }
 
+  /// Those along which the surface bends as sharply as at an edge, on some of their length.
+  std::vector<int> creased() const {
+    std::set<int> bent;
+    for (const int t : triangles_)
+      for (const int s : shape_.mesh.triangles[t].side)
+        if (origin_.features.crease[s]) bent.insert(*shape_.mesh.sides[s].cadEdge);
+    std::vector<int> chosen;
+    for (const auto& inner : edges_)
+      if (inner.faces.size() == 2 && bent.count(inner.edge)) chosen.push_back(inner.edge);
+    return separating(chosen);
+  }
+
   /// Around the faces within `reach` of a place.
   std::vector<int> around(const Vector3d& place, double reach) const {
     std::map<int, double> distance;
@@ -209,16 +221,20 @@ std::vector<Region> adopted(const RegionParts& parts, const std::string& name, M
 
 }  // namespace
 
-std::optional<RegionParts> regionParts(const Model& model, int region, const std::optional<Vector3d>& place,
+std::optional<RegionParts> regionParts(const Model& model, int region, const CutPlace& where,
                                        const Progress& progress) {
   if (!model.origin) return {};
   return guarded(Error::Kind::Stage, "tessellate", "OpenCASCADE cannot cut the region",
                  [&]() -> std::optional<RegionParts> {
                    const InnerEdges inner(*model.origin, region);
                    std::vector<int> edges;
-                   if (place) edges = inner.around(*place, model.origin->remeshing.tolerance);
-                   if (edges.empty()) edges = inner.betweenFaces();
-                   const bool seams = edges.empty();
+                   if (where.creases) {
+                     edges = inner.creased();
+                   } else {
+                     if (where.point) edges = inner.around(*where.point, model.origin->remeshing.tolerance);
+                     if (edges.empty()) edges = inner.betweenFaces();
+                   }
+                   const bool seams = edges.empty() && !where.creases;
                    if (seams) edges = inner.seams();
                    if (edges.empty()) return {};
                    return partsAlong(model, region, std::move(edges), seams, progress);

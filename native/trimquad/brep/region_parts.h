@@ -22,16 +22,21 @@ struct RegionParts {
   std::vector<std::string> edges;             ///< their names
 };
 
-/// Cuts a region around the CAD faces that lie at `place` (model units), or along all edges between CAD faces
-/// where no place is given or the faces at that place are no part of their own. A region of one face only is
-/// opened along its seams. Edges that the region's boundary has already keep their division, so that the
-/// parts fit the neighbours; cuts that would separate nothing are not made. Feature points and aligned edges
-/// stay.
+/// Where a region is cut.
+struct CutPlace {
+  bool creases = false;                  ///< along edges where it bends sharply (FeatureEdges::crease) only
+  std::optional<Eigen::Vector3d> point = {};  ///< around the CAD faces there, model units
+};
+
+/// Cuts a region along smooth edges inside it: at the place, or between all CAD faces where it has none or
+/// the faces at its point are no part of their own. A region of one face only is opened along its seams.
+/// Edges that the region's boundary has already keep their division, so that the parts fit the neighbours;
+/// cuts that would separate nothing are not made. Feature points and aligned edges stay.
 ///
 /// Returns nothing where there is nothing to cut, as in models that no CAD shape is behind. The model's
 /// region may have been refined since. Throws Error(Stage, "tessellate") where a part cannot be remeshed.
-std::optional<RegionParts> regionParts(const Model& model, int region,
-                                       const std::optional<Eigen::Vector3d>& place, const Progress& progress);
+std::optional<RegionParts> regionParts(const Model& model, int region, const CutPlace& where,
+                                       const Progress& progress);
 
 /// The model with regions replaced by their parts, which come in the place of the whole: "region 3" becomes
 /// "region 3.1", "region 3.2". Curves and corners keep their numbers, new ones come last.

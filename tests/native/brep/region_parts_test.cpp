@@ -12,10 +12,15 @@
 // After OpenMesh: OpenCASCADE's macros must not reach the mesh headers.
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
 #include <BRep_Tool.hxx>
+#include <Geom_BezierCurve.hxx>
+#include <TColgp_Array1OfPnt.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 
@@ -40,10 +45,30 @@ TopoDS_Shape roundedBox() {
   return fillet.Shape();
 }
 
-Model tessellated(const TopoDS_Shape& shape,
-                  FeatureOptions features = {.sharp = FeatureOptions::Sharp::Trim}) {
+/// Upper and lower side of a leading edge of radius `radius` along z, 1 deep, 2 long; the lower one in two
+/// faces.
+TopoDS_Shape leadingEdge(double radius) {
+  const double height = std::sqrt(2 * radius);
+  BRepBuilderAPI_Sewing sewing;
+  const auto add = [&](double sign, double first, double last) {
+    TColgp_Array1OfPnt poles(1, 3);
+    poles(1) = gp_Pnt(0, 0, 0);
+    poles(2) = gp_Pnt(0, sign * height / 2, 0);
+    poles(3) = gp_Pnt(1, sign * height, 0);
+    const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(new Geom_BezierCurve(poles), first, last);
+    sewing.Add(BRepPrimAPI_MakePrism(edge, gp_Vec(0, 0, 2)).Shape());
+  };
+  add(1, 0, 1);
+  add(-1, 0, 0.6);
+  add(-1, 0.6, 1);
+  sewing.Perform();
+  return sewing.SewedShape();
+}
+
+Model tessellated(const TopoDS_Shape& shape, FeatureOptions features = {.sharp = FeatureOptions::Sharp::Trim},
+                  double tolerance = 0.01) {
   features.quadLength = 0.9;
-  return tessellate(Shape(shape), {0.3, 0.01, features}, Progress());
+  return tessellate(Shape(shape), {0.3, tolerance, features}, Progress());
 }
 
 /// The number of the region that is neither top nor bottom.
@@ -88,7 +113,7 @@ double area(const Model& model) {
 }
 
 Model cutAt(const Model& model, int region, const std::optional<Vector3d>& place) {
-  const auto parts = regionParts(model, region, place, Progress());
+  const auto parts = regionParts(model, region, {.point = place}, Progress());
   EXPECT_TRUE(parts);
   return withParts(model, {{region, &*parts}});
 }
@@ -110,8 +135,8 @@ TEST(RegionParts, shareTheirBordersExactly) {
 TEST(RegionParts, aPlaceCutsOutTheFaceThere) {
   const Model whole = tessellated(roundedBox());
   const int cut = side(whole);
-  const auto parts =
-      regionParts(whole, cut, Vector3d(0.5 - 0.5 / std::sqrt(2), 0.5 - 0.5 / std::sqrt(2), 1), Progress());
+  const auto parts = regionParts(
+      whole, cut, {.point = Vector3d(0.5 - 0.5 / std::sqrt(2), 0.5 - 0.5 / std::sqrt(2), 1)}, Progress());
   ASSERT_TRUE(parts);
   EXPECT_EQ(parts->edges.size(), 2u);
   ASSERT_EQ(parts->model.regions.size(), 2u);
@@ -120,6 +145,25 @@ TEST(RegionParts, aPlaceCutsOutTheFaceThere) {
   const double fillet =
       std::min(surfaceArea(model.regions[cut].mesh), surfaceArea(model.regions[cut + 1].mesh));
   EXPECT_NEAR(fillet, 0.5 * std::numbers::pi / 2 * 2, 0.01);
+}
+
+TEST(RegionParts, creasesAreWhereTheSurfaceBendsWithinAnEdge) {
+  for (const bool sharp : {true, false}) {
+    const Model whole =
+        tessellated(leadingEdge(sharp ? 0.002 : 0.2), {.sharp = FeatureOptions::Sharp::Trim}, 0.04);
+    ASSERT_EQ(whole.regions.size(), 1u);
+    const auto parts = regionParts(whole, 0, {.creases = true}, Progress());
+    ASSERT_EQ(parts.has_value(), sharp);
+    if (!sharp) continue;
+    EXPECT_EQ(parts->edges.size(), 1u);
+    ASSERT_EQ(parts->model.regions.size(), 2u);
+    // Upper and lower side.
+    EXPECT_NEAR(surfaceArea(parts->model.regions[0].mesh), surfaceArea(parts->model.regions[1].mesh), 0.01);
+    const Model model = withParts(whole, {{0, &*parts}});
+    for (const int side : {0, 1}) EXPECT_FALSE(regionParts(model, side, {.creases = true}, Progress()));
+    EXPECT_NE(regionParts(model, 0, {}, Progress()).has_value(),
+              regionParts(model, 1, {}, Progress()).has_value());  // the lower side is of two faces
+  }
 }
 
 TEST(RegionParts, touchTheirNeighbours) {
