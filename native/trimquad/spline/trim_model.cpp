@@ -10,6 +10,7 @@
 #include "trimquad/spline/border_edges.h"
 #include "trimquad/spline/corner_point.h"
 #include "trimquad/spline/curve_pieces.h"
+#include "trimquad/spline/tangent_sheets.h"
 #include "trimquad/spline/trim_curve.h"
 #include "trimquad/spline/trim_loops.h"
 
@@ -21,6 +22,13 @@ constexpr double kSheetSlack = 0.5;  ///< quads
 /// Parts of the tolerance within which edges follow their curves, as seen on the sheet; and chains of mesh
 /// edges in space, so that their teeth are smoothed.
 constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
+/// Parts of the tolerance: how closely the edge of sheets that touch follows its curve, on which they are
+/// made to agree, and half of the width of the strip in which they nearly do.
+constexpr double kTouchCloseness = 0.05, kStripWidth = 0.1;
+/// How far a region may be from a surface that was moved to agree with its neighbours: by the tolerance.
+constexpr double kMovedDeviation = 1.2;
+/// Edges between touching sheets that are further apart, by the model's diagonal, are loose.
+constexpr double kLooseGap = 5 * kTangentGap;
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
 
@@ -45,9 +53,10 @@ struct CurveWithSides {
 /// constructor.
 class ModelTrimmer {
  public:
-  ModelTrimmer(const Model& model, const std::vector<const FittedSurface*>& fitted, double tolerance,
-               const Progress& progress)
+  ModelTrimmer(const Model& model, const std::vector<const GridMap*>& maps,
+               const std::vector<const FittedSurface*>& fitted, double tolerance, const Progress& progress)
       : model_(model),
+        maps_(maps),
         fitted_(fitted),
         tolerance_(tolerance),
         reach_(10 * tolerance + 1e-9 * model.diagonal),
@@ -57,10 +66,8 @@ class ModelTrimmer {
     collectRuns();
     sampleCurves();
     placeSeams();
-    for (auto& [id, curve] : curves_)
-      if (curve.sides.size() == 2)
-        curve.intersection =
-            intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
+    for (auto& [id, curve] : curves_) intersect(curve);
+    joinTangent();
     placeCorners();
   }
 
@@ -74,17 +81,25 @@ class ModelTrimmer {
   int sheetOf(const BoundaryRun& run) const { return firstSheet_[run.region] + run.chart; }
 
   void sampleCurves() {
+    for (auto& [id, curve] : curves_) sample(id, curve);
+  }
+  void sample(int id, CurveWithSides& curve) {
     // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
     const double reach = 20 * tolerance_ + 1e-9 * model_.diagonal;
-    for (auto& [id, curve] : curves_) {
-      progress_.check();
-      if (curve.sides.size() == 2)
-        curve.sampled.push_back(sampleCurve((*curvePieces_)[id], curve.sides, reach));
-      else
-        for (const auto& side : curve.sides)
-          curve.sampled.push_back(sampleCurve((*curvePieces_)[id], {side}, reach));
-    }
+    progress_.check();
+    curve.sampled.clear();
+    if (curve.sides.size() == 2)
+      curve.sampled.push_back(sampleCurve((*curvePieces_)[id], curve.sides, reach));
+    else
+      for (const auto& side : curve.sides)
+        curve.sampled.push_back(sampleCurve((*curvePieces_)[id], {side}, reach));
   }
+  void intersect(CurveWithSides& curve) {
+    if (curve.sides.size() == 2)
+      curve.intersection =
+          intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
+  }
+  void joinTangent();
 
   void placeSeams() {
     for (int k = 0; k < int(sheets_.size()); ++k) {
@@ -119,6 +134,7 @@ class ModelTrimmer {
   void appendShells(SplineModel& result) const;
 
   const Model& model_;
+  const std::vector<const GridMap*>& maps_;
   const std::vector<const FittedSurface*>& fitted_;
   double tolerance_, reach_;
   const Progress& progress_;
@@ -133,6 +149,7 @@ class ModelTrimmer {
   std::vector<CornerPoint> vertices_;                        ///< by group
   std::map<std::pair<int, int>, int> vertexOfPoint_;         ///< by region and point of its layout: group
   std::vector<std::vector<BorderLines::Edge>> borderEdges_;  ///< by region
+  std::map<int, ChartDeviation> moved_;                      ///< by region whose surface was moved
 };
 
 void ModelTrimmer::makeSheets() {
@@ -204,6 +221,33 @@ void ModelTrimmer::collectRuns() {
   for (const auto& run : runs_)
     curves_[curvePieces_->pieceOf(run)].sides.push_back(
         {&sheets_[sheetOf(run)], &run, model_.regions[run.region].name, {}, {}});
+}
+
+/// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
+void ModelTrimmer::joinTangent() {
+  std::vector<TangentCurve> tangent;
+  for (const auto& [id, curve] : curves_)
+    if (curve.sides.size() == 2 && !curve.intersection)
+      tangent.push_back({&curve.sampled[0], {sheetOf(*curve.sides[0].run), sheetOf(*curve.sides[1].run)}});
+  std::vector<char> single;
+  for (const int r : sheetRegion_) single.push_back(!borders_[r]);
+  const auto accepts = [&](int sheet, const SplineSurface& surface) {
+    const int r = sheetRegion_[sheet];
+    const auto deviation = deviationFrom(surface, model_.regions[r], *maps_[r], *fitted_[r], progress_);
+    if (deviation.max > std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)) return false;
+    moved_[r] = deviation;
+    return true;
+  };
+  const auto moved = joinTangentSheets(sheets_, tangent, single, kStripWidth * tolerance_,
+                                       kTangentGap * model_.diagonal, accepts, progress_);
+  for (auto& [id, curve] : curves_) {
+    const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {
+      return std::binary_search(moved.begin(), moved.end(), sheetOf(*side.run));
+    });
+    if (!touched) continue;
+    sample(id, curve);
+    if (curve.intersection) intersect(curve);
+  }
 }
 
 void ModelTrimmer::placeCorners() {
@@ -389,9 +433,9 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
                           vertices_[groupOf(*a.run, a.run->end)].point, progress_);
       }
       if (!edge) {
-        const double near = kCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+        const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
         edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
-        result.looseEdges += int(edge->size());
+        for (const auto& part : *edge) result.looseEdges += part.gap > kLooseGap * model_.diagonal;
       }
       addEdges(*edge, {&a, &b});
     } else {
@@ -465,6 +509,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
         }
       }
   appendShells(result);
+  result.moved = moved_;
   return result;
 }
 
@@ -501,7 +546,7 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
                       const std::vector<const FittedSurface*>& fitted, double tolerance,
                       const Progress& progress) {
   TRIMQUAD_ASSERT(maps.size() == model.regions.size() && fitted.size() == model.regions.size());
-  const ModelTrimmer trimmer(model, fitted, tolerance, progress);
+  const ModelTrimmer trimmer(model, maps, fitted, tolerance, progress);
   std::vector<double> tolerances(model.regions.size(), tolerance);
   constexpr int maxAttempts = 3;
   for (int attempt = 1;; ++attempt) {
@@ -519,6 +564,18 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
     }
     if (clean) return result;
   }
+}
+
+FittedSurface fittedAsMoved(const FittedSurface& fitted, const SplineModel& model, int region) {
+  const auto face = std::find_if(model.faces.begin(), model.faces.end(),
+                                 [&](const SplineFace& f) { return f.region == region; });
+  TRIMQUAD_ASSERT(face != model.faces.end() && model.moved.count(region) && !fitted.layout);
+  FittedSurface result = fitted;
+  result.surface = face->surface;
+  result.deviations = {model.moved.at(region)};
+  result.maxDeviation = result.deviations[0].max;
+  result.rmsDeviation = result.deviations[0].rms;
+  return result;
 }
 
 }  // namespace trimquad

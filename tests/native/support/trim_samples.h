@@ -224,14 +224,14 @@ inline TrimCase rectangleSheet() {
 }
 
 /// Two wavy sheets, [0, 5] x [0, 6] and [5, 10] x [0, 6], that meet smoothly but for `offset` between their
-/// heights.
-inline TrimCase tangentSheets(double offset) {
+/// heights, by place.
+inline TrimCase tangentSheets(const std::function<double(double, double)>& offset) {
   TrimCase c;
-  const auto lifted = [](double by) {
-    return [by](double x, double y) { return Eigen::Vector3d(wavy(x, y) + Eigen::Vector3d(0, 0, by)); };
+  const auto lifted = [&](double x, double y) {
+    return Eigen::Vector3d(wavy(x, y) + Eigen::Vector3d(0, 0, offset(x, y)));
   };
   const SplineSurface surfaces[] = {interpolated(wavy, -1, 11, 24, -1, 7, 16),
-                                    interpolated(lifted(offset), -1, 11, 24, -1, 7, 16)};
+                                    interpolated(lifted, -1, 11, 24, -1, 7, 16)};
   const Eigen::Vector2d at[] = {{0, 0}, {5, 0}, {10, 0}, {10, 6}, {5, 6}, {0, 6}};
   std::vector<CornerId> corners;
   for (const auto& p : at) corners.push_back(c.corner(wavy(p[0], p[1])));
