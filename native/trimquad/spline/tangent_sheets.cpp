@@ -17,6 +17,8 @@ constexpr int kMorePoles = 6, kFewPoles = 2000;
 /// Weight of the lines beside a curve, which give the sheets the same tangents there: where their curvatures
 /// differ, they cannot agree exactly.
 constexpr double kBesideWeight = 0.01;
+/// Sine of the angle between the sheets from which on they have an edge there, and keep it.
+constexpr double kSharp = 0.1;
 /// How far the strip goes on beyond the curve's ends, where the model's corners may lie off them: by its
 /// width.
 constexpr double kBeyondEnds[] = {1, 2, 4};
@@ -39,6 +41,7 @@ class StripMoves {
     const Eigen::Vector3d p = still_.jet(x).s;
     const Eigen::Vector2d y = moving_.footPoint(p, sampled_.foot[1 - stillSide_][i]);
     const auto at = moving_.jet(y);
+    if (across != 0 && n.cross(at.su.cross(at.sv).normalized()).norm() > kSharp) return;
     const Eigen::Vector3d by = p - at.s;
     // Beyond the sheet's end there is no foot.
     const double sliding =

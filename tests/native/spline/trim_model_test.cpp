@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numbers>
 
 #include "support/trim_samples.h"
 #include "trimquad/base/error.h"
@@ -130,6 +131,20 @@ TEST(TrimModel, tangentSheetsAreMovedOntoEachOther) {
       const double moved = (after.point(x, y) - before.point(x, y)).norm();
       EXPECT_LE(moved, x < 7.5 ? 5e-4 : 1e-4) << x << " " << y;
     }
+}
+
+TEST(TrimModel, closedSheetsAreMovedAndStayClosed) {
+  auto tubes = tangentTubes([](double u) { return 2e-4 * std::sin(2 * std::numbers::pi * 3 * u / kRings); });
+  const auto model = tubes.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_EQ(model.moved.size(), 1u);
+  EXPECT_LE(measuredGaps(model).edge, 2e-7 * tubes.model.diagonal);
+  const SplineSurface& moved = model.faces[1].surface;
+  for (double v = 1; v < 9; v += 0.5) {
+    const auto start = moved.jet(moved.firstU(), v), end = moved.jet(moved.lastU(), v);
+    EXPECT_EQ(start.s, end.s);
+    EXPECT_LE((start.su - end.su).norm() + (start.suu - end.suu).norm(), 1e-9);
+  }
 }
 
 TEST(TrimModel, sheetsThatCannotMoveMeetLooselyAndSaySo) {

@@ -304,6 +304,29 @@ inline TrimCase tube(const std::vector<Eigen::Vector2d>& holes, double radius = 
   return c;
 }
 
+/// Two tubes round the z axis, from z = 1 to a wavy ring about 5 and on to 9, that meet smoothly but for
+/// `offset` between their radii, by angle (in quads).
+inline TrimCase tangentTubes(const std::function<double(double)>& offset) {
+  TrimCase c;
+  const auto at = [](double u, double v, double more) {
+    const double a = 2 * std::numbers::pi * u / kRings, r = 4 + 0.2 * std::sin(v) + more;
+    return Eigen::Vector3d(r * std::cos(a), r * std::sin(a), v);
+  };
+  const SplineSurface surfaces[] = {
+      closedSurface([&](double u, double v) { return at(u, v, 0); }, kRings, -1, 11, 12),
+      closedSurface([&](double u, double v) { return at(u, v, offset(u)); }, kRings, -1, 11, 12)};
+  const auto ring = [&](double height, double waves) {
+    return c.closedCurve(0, kRings, [=, surface = surfaces[0]](double t) {
+      return surface.point(surface.wrappedU(t), height + waves * std::sin(4 * std::numbers::pi * t / kRings));
+    });
+  };
+  const CurveId low = ring(1, 0), middle = ring(5, 0.4), high = ring(9, 0);
+  c.region(surfaces[0], {{{low, true}}, {{middle, false}}}, angleAndZ);
+  c.region(surfaces[1], {{{middle, true}}, {{high, false}}}, angleAndZ);
+  c.model.shells.push_back({{0, 1}, {}});
+  return c;
+}
+
 /// A box of size 10 x 8 x 6 around the origin, sides bulging outwards by waves of the given height; only the
 /// sides in `which` (2 * axis + (positive side)).
 inline TrimCase bulgedBox(double waves, const std::vector<int>& which = {0, 1, 2, 3, 4, 5}) {
