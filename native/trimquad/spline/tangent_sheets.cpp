@@ -14,8 +14,8 @@ namespace {
 
 /// Poles that a sheet may come to have, by those it has; and how many more in any case.
 constexpr int kMorePoles = 6, kFewPoles = 2000;
-/// Weight of the lines beside a curve, which give the sheets the same tangents there: where their curvatures
-/// differ, they cannot agree exactly.
+/// Weight of the lines beside a curve, which give the sheets the same tangents there, and beyond its ends:
+/// where the sheets' curvatures differ, or several meet, they cannot agree exactly.
 constexpr double kBesideWeight = 0.01;
 /// Sine of the angle between the sheets from which on they have an edge there, and keep it.
 constexpr double kSharp = 0.1;
@@ -52,8 +52,8 @@ class StripMoves {
     const Eigen::Vector2d run = m.colPivHouseholderQr().solve(t);
     const std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, sampled_.s.size() - 1);
     const double length = run.norm() * (sampled_.s[after] - sampled_.s[before]) / 2;
-    const bool beside = across != 0;
-    moves.push_back({y, by, run, beside ? kBesideWeight * length : length, !beside});
+    const bool exact = along == 0 && across == 0;
+    moves.push_back({y, by, run, exact ? length : kBesideWeight * length, exact});
   }
 
  private:
