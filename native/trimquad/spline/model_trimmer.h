@@ -13,6 +13,7 @@
 #include "trimquad/spline/curve_pieces.h"
 #include "trimquad/spline/fit_surface.h"
 #include "trimquad/spline/spline_model.h"
+#include "trimquad/spline/tangent_sheets.h"
 #include "trimquad/spline/trim_curve.h"
 #include "trimquad/spline/trim_loops.h"
 
@@ -85,6 +86,7 @@ class ModelTrimmer {
       curve.intersection =
           intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
   }
+  std::vector<TangentCorner> tangentCorners() const;
   void joinTangent();
 
   void placeSeams() {

@@ -17,6 +17,7 @@ constexpr int kMorePoles = 6, kFewPoles = 2000;
 /// Weight of the lines beside a curve, which give the sheets the same tangents there, and beyond its ends:
 /// where the sheets' curvatures differ, or several meet, they cannot agree exactly.
 constexpr double kBesideWeight = 0.01;
+constexpr double kCornerWeight = 0.01;  ///< length of curve that a corner stands for, quads
 /// Sine of the angle between the sheets from which on they have an edge there, and keep it.
 constexpr double kSharp = 0.1;
 /// How far the strip goes on beyond the curve's ends, where the model's corners may lie off them: by its
@@ -84,9 +85,38 @@ void appendMoves(const StripMoves& strip, std::size_t samples, double width,
     }
 }
 
+/// What sheet `moving` has to move by in a corner to meet the one of lower rank that has the same tangents
+/// there.
+template <class Rank>
+void appendCornerMove(const TangentCorner& corner, int moving, const std::vector<Sheet>& sheets,
+                      const Rank& rank, std::vector<SurfaceMove>& moves) {
+  const auto normal = [](const SplineSurface::Jet& jet) -> Eigen::Vector3d {
+    return jet.su.cross(jet.sv).normalized();
+  };
+  const auto own = std::find_if(corner.uses.begin(), corner.uses.end(),
+                                [&](const TangentCorner::Use& use) { return use.sheet == moving; });
+  if (own == corner.uses.end()) return;
+  const Eigen::Vector2d y = sheets[moving].footPoint(corner.point, own->at);
+  const auto at = sheets[moving].jet(y);
+  const TangentCorner::Use* still = nullptr;
+  SplineSurface::Jet there;
+  for (const auto& use : corner.uses) {
+    if (!(rank(use.sheet) < rank(moving)) || (still && !(rank(use.sheet) < rank(still->sheet)))) continue;
+    const auto jet = sheets[use.sheet].jet(sheets[use.sheet].footPoint(corner.point, use.at));
+    if (normal(jet).cross(normal(at)).norm() > kSharp) continue;
+    still = &use;
+    there = jet;
+  }
+  if (!still) return;
+  // Across the sheet only: along it the feet differ as little.
+  const Eigen::Vector3d n = normal(at);
+  moves.push_back({y, n.dot(there.s - at.s) * n, {1, 1}, kCornerWeight, true});
+}
+
 }  // namespace
 
 std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
+                                   const std::vector<TangentCorner>& corners,
                                    const std::vector<char>& mayMove, double width, double gap,
                                    const std::function<bool(int, const SplineSurface&)>& accepts,
                                    const Progress& progress) {
@@ -103,6 +133,11 @@ std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector
         appendMoves(StripMoves(*curve.sampled, 1 - side, sheets[still], sheets[k]), curve.sampled->s.size(),
                     width, moves);
       }
+    const bool touches = std::any_of(curves.begin(), curves.end(), [&](const TangentCurve& curve) {
+      return curve.sheet[0] == k || curve.sheet[1] == k;
+    });
+    for (const auto& corner : corners)
+      if (touches) appendCornerMove(corner, k, sheets, rank, moves);
     if (moves.empty()) continue;
     const int poles = int(sheets[k].surface.poles.size());
     auto surface = movedSurface(sheets[k].surface, moves, gap, kMorePoles * poles + kFewPoles, progress);

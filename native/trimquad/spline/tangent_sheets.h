@@ -16,6 +16,16 @@ struct TangentCurve {
   int sheet[2];  ///< by side
 };
 
+/// A corner in which such curves end, and the sheets around it.
+struct TangentCorner {
+  struct Use {
+    int sheet;
+    Eigen::Vector2d at;  ///< foot of the corner, or close to it
+  };
+  Eigen::Vector3d point;
+  std::vector<Use> uses;
+};
+
 /// Largest gap that two sheets have after one has moved onto the other, by the model's diagonal.
 inline constexpr double kTangentGap = 2e-7;
 
@@ -25,6 +35,7 @@ inline constexpr double kTangentGap = 2e-7;
 /// \param accepts (sheet, new surface) whether it may become so
 /// Returns the sheets that have moved, ascending.
 std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
+                                   const std::vector<TangentCorner>& corners,
                                    const std::vector<char>& mayMove, double width, double gap,
                                    const std::function<bool(int, const SplineSurface&)>& accepts,
                                    const Progress& progress);

@@ -99,6 +99,29 @@ void ModelTrimmer::collectRuns() {
         {&sheets_[sheetOf(run)], &run, model_.regions[run.region].name, {}, {}});
 }
 
+/// The corners in which curves end along which sheets touch, with all sheets around them.
+std::vector<TangentCorner> ModelTrimmer::tangentCorners() const {
+  std::map<int, TangentCorner> corners;
+  for (const auto& [id, curve] : curves_)
+    if (curve.sides.size() == 2 && !curve.intersection)
+      for (const auto& end : {curve.sides[0].run->start, curve.sides[0].run->end}) corners[cornerOf(end)];
+  for (const auto& [id, curve] : curves_)
+    for (std::size_t k = 0; k < curve.sides.size(); ++k) {
+      const auto& sampled = curve.sampled[curve.sides.size() == 2 ? 0 : k];
+      const auto& feet = sampled.foot[curve.sides.size() == 2 ? k : 0];
+      const BoundaryRun& run = *curve.sides[k].run;
+      for (const bool atStart : {true, false}) {
+        const auto corner = corners.find(cornerOf(atStart ? run.start : run.end));
+        if (corner == corners.end()) continue;
+        corner->second.point = atStart ? sampled.point.front() : sampled.point.back();
+        corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back()});
+      }
+    }
+  std::vector<TangentCorner> result;
+  for (auto& [id, corner] : corners) result.push_back(std::move(corner));
+  return result;
+}
+
 /// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
 void ModelTrimmer::joinTangent() {
   std::vector<TangentCurve> tangent;
@@ -114,7 +137,7 @@ void ModelTrimmer::joinTangent() {
     moved_[r] = deviation;
     return true;
   };
-  const auto moved = joinTangentSheets(sheets_, tangent, single, kStripWidth * tolerance_,
+  const auto moved = joinTangentSheets(sheets_, tangent, tangentCorners(), single, kStripWidth * tolerance_,
                                        kTangentGap * model_.diagonal, accepts, progress_);
   for (auto& [id, curve] : curves_) {
     const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {

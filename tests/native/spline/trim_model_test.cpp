@@ -133,6 +133,18 @@ TEST(TrimModel, tangentSheetsAreMovedOntoEachOther) {
     }
 }
 
+TEST(TrimModel, sheetsAroundACornerAgreeThere) {
+  auto quarters = tangentQuarters([](int quarter, double x, double y) {
+    return 1e-4 * std::sin(0.8 * x + 2 * quarter) + 1e-4 * std::cos(0.9 * y + quarter * quarter);
+  });
+  const auto model = quarters.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_EQ(model.edges.size(), 12u);
+  EXPECT_EQ(model.vertices.size(), 9u);
+  EXPECT_EQ(model.moved.size(), 3u);
+  EXPECT_LE(measuredGaps(model).edge, 2.5e-7 * quarters.model.diagonal);
+}
+
 TEST(TrimModel, closedSheetsAreMovedAndStayClosed) {
   auto tubes = tangentTubes([](double u) { return 2e-4 * std::sin(2 * std::numbers::pi * 3 * u / kRings); });
   const auto model = tubes.trim();
