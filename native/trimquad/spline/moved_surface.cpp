@@ -17,7 +17,10 @@ constexpr double kFadeLength = 1;  ///< quads
 constexpr int kMaxRounds = 12;
 /// A direction of the parameter plane takes part in a curve's if it has this much of the other's share.
 constexpr double kTakesPart = 0.3;
-constexpr double kNarrowest = 1.0 / 256;  ///< quads
+/// What may be left of the moves where they cannot be followed, by the largest; and by how much less there
+/// has to be for more poles.
+constexpr double kWorthWhile = 0.1, kWorthMorePoles = 0.7;
+constexpr double kNarrowest = 1.0 / 32;  ///< quads; narrower ones follow wrinkles only
 
 /// Empty where inner knots are multiple.
 std::optional<SplineLine> lineOf(const std::vector<double>& knots, int degree, bool closed) {
@@ -86,25 +89,36 @@ std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const st
   auto v = lineOf(surface.knotsV, surface.degreeV, false);
   if (!u || !v) return {};
   SplineSpace space{std::move(*u), std::move(*v)};
-  Fairness plate{kPlate, kPlate, {{space.u.breaks.front(), space.v.breaks.front()}}, HUGE_VAL};
+  const Fairness plate{kPlate, kPlate, {{space.u.breaks.front(), space.v.breaks.front()}}, HUGE_VAL};
+  double left = 0;  // of the moves
+  for (const auto& move : moves) left = std::max(left, move.by.norm());
+  left *= kWorthWhile;
+  std::optional<SplineSurface> best;
   for (int round = 0; round < kMaxRounds && space.poles() <= maxPoles; ++round) {
     std::vector<Datum> data;
     for (const auto& move : moves)
       data.push_back({{surface.wrappedU(move.at[0]), move.at[1]}, move.by, move.weight});
     appendBed(space, data);
-    const auto way = space.leastSquares(data, plate, progress);
-    if (!way) return {};
+    auto way = space.leastSquares(data, plate, progress);
+    if (!way) break;
     std::vector<SurfaceMove> missed;
-    for (const auto& move : moves) {
-      const double u0 = surface.wrappedU(move.at[0]);
-      if (!move.exact || (way->point(u0, move.at[1]) - move.by).norm() <= error) continue;
+    double worst = 0;
+    for (SurfaceMove move : moves) {
+      move.at[0] = surface.wrappedU(move.at[0]);
+      const double off = (way->point(move.at[0], move.at[1]) - move.by).norm();
+      if (!move.exact || off <= error) continue;
+      worst = std::max(worst, off);
       missed.push_back(move);
-      missed.back().at[0] = u0;
     }
     if (missed.empty()) return sum(surface, *way);
-    if (!refine(space, missed)) return {};
+    if (worst <= (best ? kWorthMorePoles : 1) * left) {
+      best = std::move(way);
+      left = worst;
+    }
+    if (!refine(space, missed)) break;
   }
-  return {};
+  if (!best) return {};
+  return sum(surface, *best);
 }
 
 }  // namespace trimquad

@@ -19,8 +19,8 @@ struct SurfaceMove {
 
 /// The surface, with more knots, that moves as given, the exact ones within `error` (model units), and less
 /// and less the further away from there: by a thin plate on an elastic bed, which fades over about a quad.
-/// Empty where that takes more than `maxPoles` poles, or more knots than `surface` may have (it has multiple
-/// ones).
+/// Where no more than about `maxPoles` poles bring it there, what comes close, to a tenth of the largest move
+/// at most; empty where nothing does, or where `surface` has multiple knots.
 std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const std::vector<SurfaceMove>& moves,
                                           double error, int maxPoles, const Progress& progress);
 
