@@ -69,6 +69,10 @@ def trim(result, progress):
         elsewhere += time.monotonic() - paused
     if result.spline is None:
         result.native_shape = None
+    else:
+        for index in result.spline.moved_regions:
+            item = result.regions[index]
+            item.fitted = native.fitted_as_moved(item.fitted, result.spline, index)
     result.seconds["trim"] = time.monotonic() - started - elsewhere
     if progress.cancelled:
         raise cancelled()

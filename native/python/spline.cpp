@@ -32,6 +32,12 @@ std::size_t controlPointsOf(const FittedSurface& fit) {
   return sum;
 }
 
+std::vector<int> movedRegions(const SplineModel& model) {
+  std::vector<int> regions;
+  for (const auto& [region, deviation] : model.moved) regions.push_back(region);
+  return regions;
+}
+
 std::set<int> foldedChartsOf(const FittedSurface& fit) {
   std::set<int> charts;
   for (const auto& fold : fit.folded) charts.insert(fold.chart);
@@ -75,6 +81,8 @@ void bindSpline(py::module_& m) {
 
   py::class_<SplineModel>(m, "SplineModel")
       .def_readonly("loose_edges", &SplineModel::looseEdges)
+      .def_property_readonly("moved_regions", &movedRegions,
+                             "regions whose surface was moved to agree with others that it touches")
       .def_property_readonly("faces", [](const SplineModel& model) {
         py::list faces;
         for (const SplineFace& face : model.faces) {
@@ -89,6 +97,8 @@ void bindSpline(py::module_& m) {
       });
   m.def("trim_model", &trimModel, py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"),
         py::arg("progress"), Released());
+  m.def("fitted_as_moved", &fittedAsMoved, py::arg("fitted"), py::arg("model"), py::arg("region"),
+        "the fit of one of the moved regions, with the surface and the deviations that it has in the model");
 }
 
 }  // namespace trimquad

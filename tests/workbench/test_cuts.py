@@ -62,6 +62,15 @@ def test_first_around_the_place_then_between_all_faces(large_regions_fail, tmp_p
     assert sum("'region 0'" in line and "2 of its inner edges" in line for line in result.warnings) == 1
 
 
+def test_parts_that_touch_agree_on_their_common_edges(large_regions_fail):
+    result = converted()
+    assert result.spline.loose_edges == 0 and len(result.spline.moved_regions) >= 4  # of 8 in a ring
+    largest_gap = 2e-7 * result.model.diagonal
+    assert max(edge.Tolerance for edge in result.shape.Edges) <= largest_gap
+    for item in result.regions:
+        assert item.fitted.max_deviation == item.fitted.deviations[0][0] <= result.options.tolerance
+
+
 def test_results_do_not_depend_on_threads(large_regions_fail):
     texts = []
     for threads in (1, 3):

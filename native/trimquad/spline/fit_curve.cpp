@@ -9,6 +9,10 @@
 namespace trimquad {
 namespace {
 
+/// Neighbouring samples are at most this part of a span apart, so that the curve cannot swing out between
+/// them.
+constexpr int kIntervalsPerSpan = 5;
+
 template <int Dim>
 using Samples = std::vector<CurveSample<Dim>>;
 
@@ -56,66 +60,85 @@ void solvePoles(SplineCurve<Dim>& curve, const Samples<Dim>& samples) {
   for (int i = 0; i < free; ++i) curve.poles[i + 1] = poles.row(i).transpose();
 }
 
-/// Moves each inner sample's parameter to its foot on the curve (one Newton step), in ascending order.
+/// The way of a sample's parameter to its foot on the curve: one Newton step, at most half the way to a
+/// neighbour, so that the order stays.
 template <int Dim>
-void slide(const SplineCurve<Dim>& curve, Samples<Dim>& samples) {
-  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
-    auto& sample = samples[i];
-    const auto c = curve.derivatives(sample.s, 1);
-    const Eigen::Vector3d tangent = sample.metric * c[1], error = sample.metric * (sample.point - c[0]);
-    const double speed2 = tangent.squaredNorm();
-    if (!(speed2 > 0)) continue;
-    // At most half the way to a neighbour, so that the order stays.
-    const double before = (sample.s - samples[i - 1].s) / 2, after = (samples[i + 1].s - sample.s) / 2;
-    sample.s += std::clamp(error.dot(tangent) / speed2, -before, after);
-  }
+double slideOf(const SplineCurve<Dim>& curve, const Samples<Dim>& samples, std::size_t i) {
+  if (i == 0 || i + 1 == samples.size()) return 0;
+  const auto& sample = samples[i];
+  const auto c = curve.derivatives(sample.s, 1);
+  const Eigen::Vector3d tangent = sample.metric * c[1], error = sample.metric * (sample.point - c[0]);
+  const double speed2 = tangent.squaredNorm();
+  if (!(speed2 > 0)) return 0;
+  return std::clamp(error.dot(tangent) / speed2, (samples[i - 1].s - sample.s) / 2,
+                    (samples[i + 1].s - sample.s) / 2);
 }
 
-/// Distance in space. A sliding sample could still lose most of its part along the curve: only a tenth of it
-/// counts.
 template <int Dim>
-double distance(const SplineCurve<Dim>& curve, const CurveSample<Dim>& sample, SampleParameters parameters) {
-  const auto c = curve.derivatives(sample.s, 1);
-  const Eigen::Vector3d error = sample.metric * (sample.point - c[0]);
-  if (parameters == SampleParameters::Fixed) return error.norm();
-  const Eigen::Vector3d tangent = sample.metric * c[1];
-  const double speed2 = tangent.squaredNorm();
-  if (!(speed2 > 0)) return error.norm();
-  return (error - 0.9 * tangent * (error.dot(tangent) / speed2)).norm();
+void slide(const SplineCurve<Dim>& curve, Samples<Dim>& samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].s += slideOf(curve, samples, i);
+}
+
+std::size_t spanOf(const std::vector<double>& breaks, double s) {
+  return std::size_t(std::upper_bound(breaks.begin() + 1, breaks.end() - 1, s) - breaks.begin() - 1);
+}
+
+/// By span: the largest distance, in space, of its samples from the curve; of sliding ones, from where they
+/// slide to.
+template <int Dim>
+std::vector<double> distances(const SplineCurve<Dim>& curve, const std::vector<double>& breaks,
+                              const Samples<Dim>& samples, SampleParameters parameters) {
+  std::vector<double> largest(breaks.size() - 1, 0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double s = samples[i].s;
+    const double foot = parameters == SampleParameters::Sliding ? s + slideOf(curve, samples, i) : s;
+    double& span = largest[spanOf(breaks, s)];
+    span = std::max(span, (samples[i].metric * (samples[i].point - curve.point(foot))).norm());
+  }
+  return largest;
+}
+
+/// With a new sample between every two neighbours for which `wanted(left, right)` holds.
+template <int Dim, class Wanted>
+Samples<Dim> halved(const Samples<Dim>& samples, const SampleBetween<Dim>& between, const Wanted& wanted) {
+  Samples<Dim> denser;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    denser.push_back(samples[i]);
+    if (wanted(samples[i], samples[i + 1])) denser.push_back(between(samples[i], samples[i + 1]));
+  }
+  denser.push_back(samples.back());
+  return denser;
+}
+
+/// Adds samples until neighbours are close together against every span that they lie in or around.
+template <int Dim>
+void fillSpans(Samples<Dim>& samples, const std::vector<double>& breaks, const SampleBetween<Dim>& between) {
+  const auto far = [&](const CurveSample<Dim>& left, const CurveSample<Dim>& right) {
+    double narrowest = breaks.back() - breaks.front();
+    for (std::size_t k = spanOf(breaks, left.s); k <= spanOf(breaks, right.s); ++k)
+      narrowest = std::min(narrowest, breaks[k + 1] - breaks[k]);
+    return right.s - left.s > narrowest / kIntervalsPerSpan;
+  };
+  for (std::size_t before = 0; before < samples.size();) {
+    before = samples.size();
+    samples = halved(samples, between, far);
+  }
 }
 
 }  // namespace
 
 template <int Dim>
-SplineCurve<Dim> fitCurve(
-    std::vector<CurveSample<Dim>>& samples, int degree, double tolerance, SampleParameters parameters,
-    const std::function<CurveSample<Dim>(const CurveSample<Dim>&, const CurveSample<Dim>&)>& between,
-    const Progress& progress) {
+SplineCurve<Dim> fitCurve(std::vector<CurveSample<Dim>>& samples, int degree, double tolerance,
+                          SampleParameters parameters, const SampleBetween<Dim>& between,
+                          const Progress& progress) {
   TRIMQUAD_ASSERT(samples.size() >= 2);
   const double first = samples.front().s, last = samples.back().s, narrowest = 1e-6 * (last - first);
-  const std::size_t samplesPerSpan = 6;
   std::vector<double> breaks{first, last};
-  const auto sampled = [](double s, const CurveSample<Dim>& sample) { return s < sample.s; };
+  const auto anywhere = [](const CurveSample<Dim>&, const CurveSample<Dim>&) { return true; };
   constexpr int maxRounds = 60, maxSamples = 200000;
-  for (int round = 0; round < maxRounds; ++round) {
+  for (int round = 0; round < maxRounds && samples.size() <= maxSamples; ++round) {
     progress.check();
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-      auto begin = std::upper_bound(samples.begin(), samples.end(), breaks[k], sampled);
-      auto end = std::upper_bound(samples.begin(), samples.end(), breaks[k + 1], sampled);
-      while (std::size_t(end - begin) < samplesPerSpan) {
-        const auto from = begin == samples.begin() ? begin : begin - 1,
-                   to = end == samples.end() ? end - 1 : end;
-        Samples<Dim> denser;
-        for (auto it = from; it != to; ++it) {
-          denser.push_back(*it);
-          denser.push_back(between(*it, *(it + 1)));
-        }
-        const auto at = samples.erase(from, to) - samples.begin();
-        samples.insert(samples.begin() + at, denser.begin(), denser.end());
-        begin = std::upper_bound(samples.begin(), samples.end(), breaks[k], sampled);
-        end = std::upper_bound(samples.begin(), samples.end(), breaks[k + 1], sampled);
-      }
-    }
+    fillSpans<Dim>(samples, breaks, between);
     SplineCurve<Dim> curve;
     curve.degree = degree;
     curve.knots.assign(degree, first);
@@ -126,31 +149,32 @@ SplineCurve<Dim> fitCurve(
       slide(curve, samples);
       solvePoles(curve, samples);
     }
-    std::vector<double> worst(breaks.size() - 1, 0);
-    for (const auto& sample : samples) {
-      const auto it = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, sample.s);
-      double& w = worst[it - breaks.begin() - 1];
-      w = std::max(w, distance(curve, sample, parameters));
+    const auto misses = [&](double distance) { return distance > tolerance; };
+    const auto worst = distances(curve, breaks, samples, parameters);
+    if (std::none_of(worst.begin(), worst.end(), misses)) {
+      const auto control = distances(curve, breaks, halved<Dim>(samples, between, anywhere), parameters);
+      if (std::none_of(control.begin(), control.end(), misses)) return curve;
+      samples = halved<Dim>(samples, between, [&](const CurveSample<Dim>& p, const CurveSample<Dim>& q) {
+        return misses(control[spanOf(breaks, (p.s + q.s) / 2)]);
+      });
+      continue;
     }
-    if (*std::max_element(worst.begin(), worst.end()) <= tolerance) return curve;
     std::vector<double> finer;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
       finer.push_back(breaks[k]);
-      if (worst[k] > tolerance && breaks[k + 1] - breaks[k] > narrowest)
+      if (misses(worst[k]) && breaks[k + 1] - breaks[k] > narrowest)
         finer.push_back((breaks[k] + breaks[k + 1]) / 2);
     }
     finer.push_back(last);
-    if (finer.size() == breaks.size() || samples.size() > maxSamples) break;
+    if (finer.size() == breaks.size()) break;
     breaks = std::move(finer);
   }
   throw stageError("fit", "a boundary curve cannot be followed within the tolerance; use a larger tolerance");
 }
 
-template PlaneCurve fitCurve<2>(
-    std::vector<CurveSample<2>>&, int, double, SampleParameters,
-    const std::function<CurveSample<2>(const CurveSample<2>&, const CurveSample<2>&)>&, const Progress&);
-template SpaceCurve fitCurve<3>(
-    std::vector<CurveSample<3>>&, int, double, SampleParameters,
-    const std::function<CurveSample<3>(const CurveSample<3>&, const CurveSample<3>&)>&, const Progress&);
+template PlaneCurve fitCurve<2>(std::vector<CurveSample<2>>&, int, double, SampleParameters,
+                                const SampleBetween<2>&, const Progress&);
+template SpaceCurve fitCurve<3>(std::vector<CurveSample<3>>&, int, double, SampleParameters,
+                                const SampleBetween<3>&, const Progress&);
 
 }  // namespace trimquad

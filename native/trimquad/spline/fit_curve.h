@@ -22,16 +22,19 @@ struct CurveSample {
 /// Whether the samples keep their parameters or may slide along the curve.
 enum class SampleParameters { Sliding, Fixed };
 
+/// Makes a new sample between two neighbours.
+template <int Dim>
+using SampleBetween = std::function<CurveSample<Dim>(const CurveSample<Dim>&, const CurveSample<Dim>&)>;
+
 /// The smooth (C^(degree-1)) curve over [first s, last s] with about the fewest knots that stays within
-/// `tolerance`, in space, of all samples: least squares, spans split where the distance is too large. Starts
-/// and ends exactly in the first and last sample. Sliding samples count only with their distance across the
-/// curve. \param samples  ascending in s; refined in place where spans get narrower than their distance
-/// \param between  a new sample between two neighbours
+/// `tolerance`, in space, of all samples and of new ones between them: least squares, spans split where the
+/// distance is too large. Starts and ends exactly in the first and last sample. The distance of a sliding
+/// sample is that from its foot, as far as it gets there without passing another one.
+/// \param samples  ascending in s; refined in place where they are far apart for a span
 /// Throws Error(Stage, "fit") where no refinement brings the curve within the tolerance.
 template <int Dim>
-SplineCurve<Dim> fitCurve(
-    std::vector<CurveSample<Dim>>& samples, int degree, double tolerance, SampleParameters parameters,
-    const std::function<CurveSample<Dim>(const CurveSample<Dim>&, const CurveSample<Dim>&)>& between,
-    const Progress& progress);
+SplineCurve<Dim> fitCurve(std::vector<CurveSample<Dim>>& samples, int degree, double tolerance,
+                          SampleParameters parameters, const SampleBetween<Dim>& between,
+                          const Progress& progress);
 
 }  // namespace trimquad

@@ -5,6 +5,7 @@
 #include "trimquad/base/progress.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/spline/chart.h"
+#include "trimquad/spline/chart_deviation.h"
 #include "trimquad/spline/layout.h"
 #include "trimquad/spline/spline_geometry.h"
 
@@ -26,13 +27,6 @@ struct FitOptions {
   /// it folds over nowhere.
   bool slides = true;
   int threads = 1;  ///< the result does not depend on it
-};
-
-/// How far a part of a region lies from its surface.
-struct ChartDeviation {
-  double max = 0;                                   ///< over independent samples and those of the fit
-  double rms = 0;                                   ///< over independent samples
-  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< the region's point that lies farthest away
 };
 
 /// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else

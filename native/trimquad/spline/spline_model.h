@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
+#include "trimquad/spline/chart_deviation.h"
 #include "trimquad/spline/spline_geometry.h"
 
 namespace trimquad {
@@ -55,9 +57,11 @@ struct SplineModel {
     std::optional<int> solid;  ///< which solid the (closed) shell bounds
   };
   std::vector<Shell> shells;
-  /// Edges between surfaces that are nearly tangent: on the first face's surface, the second one's only
-  /// within the edge's tolerance.
+  /// Edges between surfaces that are nearly tangent and more than a millionth of the model's diagonal apart:
+  /// on the first face's surface, the second one's only within the edge's tolerance.
   int looseEdges = 0;
+  /// By region whose surface was moved to agree with others that it touches: how far it lies from it now.
+  std::map<int, ChartDeviation> moved = {};
 };
 
 }  // namespace trimquad

@@ -324,9 +324,12 @@ std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<
   const double offset =
       std::max((samples.front().metric * (samples.front().point - sampleB(samples.front().s).point)).norm(),
                (samples.back().metric * (samples.back().point - sampleB(samples.back().s).point)).norm());
+  double apart = kComposedError;
+  for (const auto& sample : samples)
+    apart = std::max(apart, (sheetA.jet(wholeA.point(sample.s)).s - sheetB.jet(sample.point).s).norm());
+  const double tolerance = std::max(std::min(apart, closeness / 20), 1.1 * offset);
   const PlaneCurve wholeB = located(sides[1], sampled, [&] {
-    return fitCurve<2>(samples, 3, std::max(closeness / 20, 1.1 * offset), SampleParameters::Fixed, between,
-                       progress);
+    return fitCurve<2>(samples, 3, tolerance, SampleParameters::Fixed, between, progress);
   });
   std::vector<double> cuts;
   appendSeamCrossings(

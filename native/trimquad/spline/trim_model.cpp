@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
-#include "trimquad/base/disjoint_sets.h"
 #include "trimquad/base/error.h"
-#include "trimquad/spline/border_edges.h"
-#include "trimquad/spline/corner_point.h"
-#include "trimquad/spline/curve_pieces.h"
-#include "trimquad/spline/trim_curve.h"
-#include "trimquad/spline/trim_loops.h"
+#include "trimquad/spline/model_trimmer.h"
+#include "trimquad/spline/tangent_sheets.h"
 
 namespace trimquad {
 namespace {
@@ -21,119 +16,17 @@ constexpr double kSheetSlack = 0.5;  ///< quads
 /// Parts of the tolerance within which edges follow their curves, as seen on the sheet; and chains of mesh
 /// edges in space, so that their teeth are smoothed.
 constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
+/// Parts of the tolerance: how closely the edge of sheets that touch follows its curve, on which they are
+/// made to agree, and half of the width of the strip in which they nearly do.
+constexpr double kTouchCloseness = 0.05, kStripWidth = 0.1;
+/// How far a region may be from a surface that was moved to agree with its neighbours: by the tolerance.
+constexpr double kMovedDeviation = 1.2;
+/// Edges between touching sheets that are further apart, by the model's diagonal, are loose.
+constexpr double kLooseGap = 5 * kTangentGap;
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
 
-/// A boundary vertex of a chart that is a corner of the model, or a place where charts meet.
-struct CornerUse {
-  int corner, sheet, vertex;
-  std::optional<int> layoutPoint;  ///< of its region, where that is known
-  Eigen::Vector3d point;
-  Eigen::Vector2d guess;
-  Eigen::Vector2d at;  ///< on the sheet
-  int group = -1;      ///< which vertex of the result
-  friend auto key(const CornerUse& use) { return std::tuple(use.corner, use.sheet, use.vertex); }
-};
-
-struct CurveWithSides {
-  std::vector<SheetSide> sides;
-  std::vector<SampledCurve> sampled;  ///< one for all sides where they share the edge, else one a side
-  std::optional<IntersectionCurve> intersection;
-};
-
-/// Everything that does not depend on how closely free edges follow their curves is settled once, in the
-/// constructor.
-class ModelTrimmer {
- public:
-  ModelTrimmer(const Model& model, const std::vector<const FittedSurface*>& fitted, double tolerance,
-               const Progress& progress)
-      : model_(model),
-        fitted_(fitted),
-        tolerance_(tolerance),
-        reach_(10 * tolerance + 1e-9 * model.diagonal),
-        progress_(progress),
-        corners_(0) {
-    makeSheets();
-    collectRuns();
-    sampleCurves();
-    placeSeams();
-    for (auto& [id, curve] : curves_)
-      if (curve.sides.size() == 2)
-        curve.intersection =
-            intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
-    placeCorners();
-  }
-
-  /// \param tolerances by region: how far free edges may be from their curves, model units
-  SplineModel trim(const std::vector<double>& tolerances) const;
-
- private:
-  void makeSheets();
-  void collectRuns();
-  void settleSplits(std::vector<CurveSplit>& splits);
-  int sheetOf(const BoundaryRun& run) const { return firstSheet_[run.region] + run.chart; }
-
-  void sampleCurves() {
-    // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
-    const double reach = 20 * tolerance_ + 1e-9 * model_.diagonal;
-    for (auto& [id, curve] : curves_) {
-      progress_.check();
-      if (curve.sides.size() == 2)
-        curve.sampled.push_back(sampleCurve((*curvePieces_)[id], curve.sides, reach));
-      else
-        for (const auto& side : curve.sides)
-          curve.sampled.push_back(sampleCurve((*curvePieces_)[id], {side}, reach));
-    }
-  }
-
-  void placeSeams() {
-    for (int k = 0; k < int(sheets_.size()); ++k) {
-      if (!sheets_[k].period) continue;
-      std::vector<std::vector<Eigen::Vector2d>> boundary;
-      for (const auto& [id, curve] : curves_)
-        for (std::size_t side = 0; side < curve.sides.size(); ++side)
-          if (sheetOf(*curve.sides[side].run) == k)
-            boundary.push_back(curve.sides.size() == 2 ? curve.sampled[0].foot[side]
-                                                       : curve.sampled[side].foot[0]);
-      sheets_[k].surface = withSeamAt(sheets_[k].surface, seamPlace(sheets_[k], boundary));
-    }
-  }
-
-  int cornerUse(const BoundaryRun& run, const RunEnd& end) const {
-    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}, {}};
-    const auto found =
-        std::lower_bound(uses_.begin(), uses_.end(), wanted,
-                         [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
-    return int(found - uses_.begin());
-  }
-  int cornerOf(const RunEnd& end) const { return const_cast<DisjointSets&>(corners_).root(end.corner); }
-  int groupOf(const BoundaryRun& run, const RunEnd& end) const { return uses_[cornerUse(run, end)].group; }
-
-  void placeCorners();
-  CornerPoint cornerOnBorders(const std::vector<int>& members);
-  void placeInnerPoints();
-  int layoutPoint(const CornerUse& use) const;
-
-  PieceLoop borderPiece(int region, const Layout::Stretch& stretch,
-                        const std::vector<SplineEdgeId>& edges) const;
-  void appendShells(SplineModel& result) const;
-
-  const Model& model_;
-  const std::vector<const FittedSurface*>& fitted_;
-  double tolerance_, reach_;
-  const Progress& progress_;
-  DisjointSets corners_;
-  std::vector<Sheet> sheets_;
-  std::vector<int> sheetRegion_, firstSheet_;        ///< by sheet; by region
-  std::vector<std::optional<BorderLines>> borders_;  ///< by region, where it has several charts
-  std::vector<BoundaryRun> runs_;                    ///< region by region, in the order of their loops
-  std::optional<CurvePieces> curvePieces_;
-  std::map<int, CurveWithSides> curves_;                     ///< by piece
-  std::vector<CornerUse> uses_;                              ///< ascending
-  std::vector<CornerPoint> vertices_;                        ///< by group
-  std::map<std::pair<int, int>, int> vertexOfPoint_;         ///< by region and point of its layout: group
-  std::vector<std::vector<BorderLines::Edge>> borderEdges_;  ///< by region
-};
+}  // namespace
 
 void ModelTrimmer::makeSheets() {
   for (int r = 0; r < int(fitted_.size()); ++r) {
@@ -206,142 +99,53 @@ void ModelTrimmer::collectRuns() {
         {&sheets_[sheetOf(run)], &run, model_.regions[run.region].name, {}, {}});
 }
 
-void ModelTrimmer::placeCorners() {
-  const auto addUse = [&](const BoundaryRun& run, const RunEnd& end, std::size_t at) {
-    uses_.push_back({cornerOf(end), sheetOf(run), end.vertex, end.point, run.points[at], run.uv[at], {}});
-  };
-  for (const auto& run : runs_) {
-    addUse(run, run.start, 0);
-    addUse(run, run.end, run.points.size() - 1);
-  }
-  std::sort(uses_.begin(), uses_.end(),
-            [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
-  uses_.erase(std::unique(uses_.begin(), uses_.end(),
-                          [](const CornerUse& x, const CornerUse& y) { return key(x) == key(y); }),
-              uses_.end());
-
-  // What meets in one corner is one vertex where a shared curve or a shell holds it together.
-  DisjointSets together(uses_.size());
+/// The corners in which curves end along which sheets touch, with all sheets around them.
+std::vector<TangentCorner> ModelTrimmer::tangentCorners() const {
+  std::map<int, TangentCorner> corners;
   for (const auto& [id, curve] : curves_)
-    if (curve.sides.size() == 2) {
-      const auto &a = *curve.sides[0].run, &b = *curve.sides[1].run;
-      together.unite(cornerUse(a, a.start), cornerUse(b, b.start));
-      together.unite(cornerUse(a, a.end), cornerUse(b, b.end));
-    }
-  std::vector<int> shellOf(model_.regions.size(), -1);
-  for (int s = 0; s < int(model_.shells.size()); ++s)
-    for (const int r : model_.shells[s].regions) shellOf[r] = s;
-  const auto shellOfUse = [&](std::size_t i) { return shellOf[sheetRegion_[uses_[i].sheet]]; };
-  for (std::size_t i = 0; i < uses_.size(); ++i)
-    for (std::size_t j = i + 1; j < uses_.size() && uses_[j].corner == uses_[i].corner; ++j)
-      if (shellOfUse(i) == shellOfUse(j)) together.unite(int(i), int(j));
-
-  std::map<int, std::vector<int>> groups;
-  for (int i = 0; i < int(uses_.size()); ++i) groups[together.root(i)].push_back(i);
-  for (const auto& [first, members] : groups) {
-    vertices_.push_back(cornerOnBorders(members));
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      auto& use = uses_[members[k]];
-      use.group = int(vertices_.size()) - 1;
-      use.at = vertices_.back().at[k];
-      if (borders_[sheetRegion_[use.sheet]])
-        if (const int point = layoutPoint(use); point >= 0)
-          vertexOfPoint_[{sheetRegion_[use.sheet], point}] = use.group;
-    }
-  }
-  for (auto& [id, curve] : curves_)
-    for (auto& side : curve.sides) {
-      const auto unwrapped = [&](const RunEnd& end, const Eigen::Vector2d& near) {
-        Eigen::Vector2d x = uses_[cornerUse(*side.run, end)].at;
-        if (const auto& period = side.sheet->period) x[0] += *period * std::round((near[0] - x[0]) / *period);
-        return x;
-      };
-      side.start = unwrapped(side.run->start, side.run->uv.front());
-      side.end = unwrapped(side.run->end, side.run->uv.back());
-    }
-  placeInnerPoints();
-}
-
-/// The point of its region's layout that a corner is, or -1.
-int ModelTrimmer::layoutPoint(const CornerUse& use) const {
-  if (use.layoutPoint || use.vertex < 0) return use.layoutPoint.value_or(-1);
-  const auto& points = fitted_[sheetRegion_[use.sheet]]->layout->points;
-  for (int p = 0; p < int(points.size()); ++p)
-    if (points[p].vertex.is_valid() && points[p].vertex.idx() == use.vertex) return p;
-  return -1;
-}
-
-/// The vertex for uses of one corner. Where one border between charts ends in it, on the border's curve;
-/// where several do, at their common end in the grid.
-CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
-  const Eigen::Vector3d p = uses_[members.front()].point;
-  std::vector<const Sheet*> sheets;
-  std::vector<Eigen::Vector2d> guess;
-  std::set<std::pair<int, int>> points;  // region, point of its layout
-  for (const int i : members) {
-    sheets.push_back(&sheets_[uses_[i].sheet]);
-    guess.push_back(uses_[i].guess);
-    const int region = sheetRegion_[uses_[i].sheet];
-    if (!borders_[region]) continue;
-    if (const int point = layoutPoint(uses_[i]); point >= 0 && !borders_[region]->endsAt(point).empty())
-      points.insert({region, point});
-  }
-  if (points.empty()) return cornerPoint(p, sheets, guess, reach_);
-  CornerPoint corner{Eigen::Vector3d::Zero(), guess};
-  bool placed = false;
-  for (const auto& [region, point] : points) {
-    auto& lines = *borders_[region];
-    const auto& ends = lines.endsAt(point);
-    const SheetLine line = lines.line(ends[0].border, 0);
-    if (ends.size() == 1) {
-      std::vector<int> others;
-      for (int k = 0; k < int(members.size()); ++k)
-        if (sheetRegion_[uses_[members[k]].sheet] != region) others.push_back(k);
-      const int other = others.size() == 1 && !placed ? others[0] : -1;
-      lines.setEnd(ends[0], placeOnLine(placed ? corner.point : p, line, lines.endOf(ends[0]),
-                                        other < 0 ? nullptr : sheets[other],
-                                        other < 0 ? Eigen::Vector2d(0, 0) : guess[other], reach_));
-    }
-    if (!placed) corner.point = line.sheet->jet(line.at(lines.endOf(ends[0]))).s;
-    placed = true;
-    if (ends.size() == 1)
-      for (std::size_t k = 0; k < members.size(); ++k)
-        for (const int side : {0, 1}) {
-          const SheetLine own = lines.line(ends[0].border, side);
-          if (sheets[k] == own.sheet) corner.at[k] = own.at(lines.endOf(ends[0]));
-        }
-  }
-  for (std::size_t k = 0; k < members.size(); ++k)
-    if (!borders_[sheetRegion_[uses_[members[k]].sheet]])
-      corner.at[k] = sheets[k]->footPoint(corner.point, corner.at[k]);
-  return corner;
-}
-
-/// Vertices inside regions, where borders meet, and the borders' edges.
-void ModelTrimmer::placeInnerPoints() {
-  borderEdges_.resize(model_.regions.size());
-  for (int r = 0; r < int(model_.regions.size()); ++r) {
-    if (!borders_[r]) continue;
-    const auto& layout = *fitted_[r]->layout;
-    for (int p = 0; p < int(layout.points.size()); ++p) {
-      const auto& ends = borders_[r]->endsAt(p);
-      if (ends.empty() || vertexOfPoint_.count({r, p})) continue;
-      const SheetLine line = borders_[r]->line(ends[0].border, 0);
-      vertexOfPoint_[{r, p}] = int(vertices_.size());
-      vertices_.push_back({line.sheet->jet(line.at(borders_[r]->endOf(ends[0]))).s, {}});
-    }
-    for (int b = 0; b < int(layout.borders.size()); ++b) {
-      if (!borders_[r]->staysOnSurfaces(b)) {
-        const SheetLine line = borders_[r]->line(b, 0);
-        throw stageError("fit", "a border between charts leaves the fitted surfaces; use a smaller tolerance",
-                         model_.regions[r].name, line.sheet->jet(line.start).s);
+    if (curve.sides.size() == 2 && !curve.intersection)
+      for (const auto& end : {curve.sides[0].run->start, curve.sides[0].run->end}) corners[cornerOf(end)];
+  for (const auto& [id, curve] : curves_)
+    for (std::size_t k = 0; k < curve.sides.size(); ++k) {
+      const auto& sampled = curve.sampled[curve.sides.size() == 2 ? 0 : k];
+      const auto& feet = sampled.foot[curve.sides.size() == 2 ? k : 0];
+      const BoundaryRun& run = *curve.sides[k].run;
+      for (const bool atStart : {true, false}) {
+        const auto corner = corners.find(cornerOf(atStart ? run.start : run.end));
+        if (corner == corners.end()) continue;
+        corner->second.point = atStart ? sampled.point.front() : sampled.point.back();
+        corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back()});
       }
-      auto edge = borders_[r]->edge(b);
-      edge.edge.start = {vertexOfPoint_.at({r, layout.borders[b].startPoint})};
-      edge.edge.end = {vertexOfPoint_.at({r, layout.borders[b].endPoint})};
-      if (edge.reversed) std::swap(edge.edge.start, edge.edge.end);
-      borderEdges_[r].push_back(std::move(edge));
     }
+  std::vector<TangentCorner> result;
+  for (auto& [id, corner] : corners) result.push_back(std::move(corner));
+  return result;
+}
+
+/// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
+void ModelTrimmer::joinTangent() {
+  std::vector<TangentCurve> tangent;
+  for (const auto& [id, curve] : curves_)
+    if (curve.sides.size() == 2 && !curve.intersection)
+      tangent.push_back({&curve.sampled[0], {sheetOf(*curve.sides[0].run), sheetOf(*curve.sides[1].run)}});
+  std::vector<char> single;
+  for (const int r : sheetRegion_) single.push_back(!borders_[r]);
+  const auto accepts = [&](int sheet, const SplineSurface& surface) {
+    const int r = sheetRegion_[sheet];
+    const auto deviation = deviationFrom(surface, model_.regions[r], *maps_[r], *fitted_[r], progress_);
+    if (deviation.max > std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)) return false;
+    moved_[r] = deviation;
+    return true;
+  };
+  const auto moved = joinTangentSheets(sheets_, tangent, tangentCorners(), single, kStripWidth * tolerance_,
+                                       kTangentGap * model_.diagonal, accepts, progress_);
+  for (auto& [id, curve] : curves_) {
+    const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {
+      return std::binary_search(moved.begin(), moved.end(), sheetOf(*side.run));
+    });
+    if (!touched) continue;
+    sample(id, curve);
+    if (curve.intersection) intersect(curve);
   }
 }
 
@@ -389,9 +193,9 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
                           vertices_[groupOf(*a.run, a.run->end)].point, progress_);
       }
       if (!edge) {
-        const double near = kCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+        const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
         edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
-        result.looseEdges += int(edge->size());
+        for (const auto& part : *edge) result.looseEdges += part.gap > kLooseGap * model_.diagonal;
       }
       addEdges(*edge, {&a, &b});
     } else {
@@ -465,6 +269,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
         }
       }
   appendShells(result);
+  result.moved = moved_;
   return result;
 }
 
@@ -495,13 +300,11 @@ void ModelTrimmer::appendShells(SplineModel& result) const {
   }
 }
 
-}  // namespace
-
 SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& maps,
                       const std::vector<const FittedSurface*>& fitted, double tolerance,
                       const Progress& progress) {
   TRIMQUAD_ASSERT(maps.size() == model.regions.size() && fitted.size() == model.regions.size());
-  const ModelTrimmer trimmer(model, fitted, tolerance, progress);
+  const ModelTrimmer trimmer(model, maps, fitted, tolerance, progress);
   std::vector<double> tolerances(model.regions.size(), tolerance);
   constexpr int maxAttempts = 3;
   for (int attempt = 1;; ++attempt) {
@@ -519,6 +322,18 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
     }
     if (clean) return result;
   }
+}
+
+FittedSurface fittedAsMoved(const FittedSurface& fitted, const SplineModel& model, int region) {
+  const auto face = std::find_if(model.faces.begin(), model.faces.end(),
+                                 [&](const SplineFace& f) { return f.region == region; });
+  TRIMQUAD_ASSERT(face != model.faces.end() && model.moved.count(region) && !fitted.layout);
+  FittedSurface result = fitted;
+  result.surface = face->surface;
+  result.deviations = {model.moved.at(region)};
+  result.maxDeviation = result.deviations[0].max;
+  result.rmsDeviation = result.deviations[0].rms;
+  return result;
 }
 
 }  // namespace trimquad

@@ -18,4 +18,8 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
                       const std::vector<const FittedSurface*>& fitted, double tolerance,
                       const Progress& progress);
 
+/// The fit of a region whose surface was moved (SplineModel::moved), with the surface and the deviations that
+/// it has in the model.
+FittedSurface fittedAsMoved(const FittedSurface& fitted, const SplineModel& model, int region);
+
 }  // namespace trimquad

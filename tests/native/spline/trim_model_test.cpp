@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numbers>
 
 #include "support/trim_samples.h"
 #include "trimquad/base/error.h"
@@ -111,9 +112,59 @@ TEST(TrimModel, twoCurvedSheetsShareOneEdge) {
   EXPECT_FALSE(model.shells[0].solid);
 }
 
-TEST(TrimModel, tangentSheetsMeetLooselyAndSaySo) {
-  const auto model = tangentSheets(2e-4).trim();
+/// Apart by up to 4e-4, now above and now below.
+double slowlyVarying(double x, double y) {
+  return 2e-4 * (std::sin(1.1 * x + 0.3) + std::cos(1.7 * y));
+}
+
+TEST(TrimModel, tangentSheetsAreMovedOntoEachOther) {
+  auto sheets = tangentSheets(slowlyVarying);
+  const auto model = sheets.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_EQ(model.edges.size(), 7u);
+  EXPECT_LE(measuredGaps(model).edge, 2e-7 * sheets.model.diagonal);
+  EXPECT_EQ(model.moved.size(), 1u);
+  const auto &before = sheets.fits[1]->surface, &after = model.faces[1].surface;
+  EXPECT_EQ(model.faces[0].surface.poles, sheets.fits[0]->surface.poles);
+  for (double x = 5; x <= 10; x += 0.25)
+    for (double y = 0; y <= 6; y += 0.25) {
+      const double moved = (after.point(x, y) - before.point(x, y)).norm();
+      EXPECT_LE(moved, x < 7.5 ? 5e-4 : 1e-4) << x << " " << y;
+    }
+}
+
+TEST(TrimModel, sheetsAroundACornerAgreeThere) {
+  auto quarters = tangentQuarters([](int quarter, double x, double y) {
+    return 1e-4 * std::sin(0.8 * x + 2 * quarter) + 1e-4 * std::cos(0.9 * y + quarter * quarter);
+  });
+  const auto model = quarters.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_EQ(model.edges.size(), 12u);
+  EXPECT_EQ(model.vertices.size(), 9u);
+  EXPECT_EQ(model.moved.size(), 3u);
+  EXPECT_LE(measuredGaps(model).edge, 2.5e-7 * quarters.model.diagonal);
+}
+
+TEST(TrimModel, closedSheetsAreMovedAndStayClosed) {
+  auto tubes = tangentTubes([](double u) { return 2e-4 * std::sin(2 * std::numbers::pi * 3 * u / kRings); });
+  const auto model = tubes.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_EQ(model.moved.size(), 1u);
+  EXPECT_LE(measuredGaps(model).edge, 2e-7 * tubes.model.diagonal);
+  const SplineSurface& moved = model.faces[1].surface;
+  for (double v = 1; v < 9; v += 0.5) {
+    const auto start = moved.jet(moved.firstU(), v), end = moved.jet(moved.lastU(), v);
+    EXPECT_EQ(start.s, end.s);
+    EXPECT_LE((start.su - end.su).norm() + (start.suu - end.suu).norm(), 1e-9);
+  }
+}
+
+TEST(TrimModel, sheetsThatCannotMoveMeetLooselyAndSaySo) {
+  auto sheets = tangentSheets([](double, double) { return 2e-4; });
+  for (auto& fit : sheets.fits) fit->surface = withKnotU(fit->surface, fit->surface.knotsU[10]);
+  const auto model = sheets.trim();
   EXPECT_EQ(model.looseEdges, 1);
+  EXPECT_TRUE(model.moved.empty());
   EXPECT_EQ(model.edges.size(), 7u);
   const auto gaps = measuredGaps(model);
   EXPECT_GT(gaps.edge, 1e-4);

@@ -224,14 +224,14 @@ inline TrimCase rectangleSheet() {
 }
 
 /// Two wavy sheets, [0, 5] x [0, 6] and [5, 10] x [0, 6], that meet smoothly but for `offset` between their
-/// heights.
-inline TrimCase tangentSheets(double offset) {
+/// heights, by place.
+inline TrimCase tangentSheets(const std::function<double(double, double)>& offset) {
   TrimCase c;
-  const auto lifted = [](double by) {
-    return [by](double x, double y) { return Eigen::Vector3d(wavy(x, y) + Eigen::Vector3d(0, 0, by)); };
+  const auto lifted = [&](double x, double y) {
+    return Eigen::Vector3d(wavy(x, y) + Eigen::Vector3d(0, 0, offset(x, y)));
   };
   const SplineSurface surfaces[] = {interpolated(wavy, -1, 11, 24, -1, 7, 16),
-                                    interpolated(lifted(offset), -1, 11, 24, -1, 7, 16)};
+                                    interpolated(lifted, -1, 11, 24, -1, 7, 16)};
   const Eigen::Vector2d at[] = {{0, 0}, {5, 0}, {10, 0}, {10, 6}, {5, 6}, {0, 6}};
   std::vector<CornerId> corners;
   for (const auto& p : at) corners.push_back(c.corner(wavy(p[0], p[1])));
@@ -301,6 +301,60 @@ inline TrimCase tube(const std::vector<Eigen::Vector2d>& holes, double radius = 
                       false}});
   const int r = c.region(surface, loops, angleAndZ);
   c.model.shells.push_back({{r}, {}});
+  return c;
+}
+
+/// Four quarters of a wavy sheet around (5, 3), opposite ones first, that meet smoothly but for `offset`
+/// between their heights, by quarter and place.
+inline TrimCase tangentQuarters(const std::function<double(int, double, double)>& offset) {
+  TrimCase c;
+  CornerId corner[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) corner[i][j] = c.corner(wavy(5 * i, 3 * j));
+  const auto line = [&](int i, int j, int k, int l) {
+    return c.curve(0, 1, corner[i][j], corner[k][l],
+                   [=](double t) { return wavy(5 * ((1 - t) * i + t * k), 3 * ((1 - t) * j + t * l)); });
+  };
+  CurveId along[2][3] = {{line(0, 0, 1, 0), line(0, 1, 1, 1), line(0, 2, 1, 2)},
+                         {line(1, 0, 2, 0), line(1, 1, 2, 1), line(1, 2, 2, 2)}};
+  CurveId across[3][2] = {{line(0, 0, 0, 1), line(0, 1, 0, 2)},
+                          {line(1, 0, 1, 1), line(1, 1, 1, 2)},
+                          {line(2, 0, 2, 1), line(2, 1, 2, 2)}};
+  const int quarters[4][2] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+  for (int q = 0; q < 4; ++q) {
+    const auto [i, j] = quarters[q];
+    const auto lifted = [&](double x, double y) {
+      return Eigen::Vector3d(wavy(x, y) + Eigen::Vector3d(0, 0, offset(q, x, y)));
+    };
+    c.region(
+        interpolated(lifted, -1, 11, 24, -1, 7, 16),
+        {{{along[i][j], true}, {across[i + 1][j], true}, {along[i][j + 1], false}, {across[i][j], false}}},
+        dropZ);
+  }
+  c.model.shells.push_back({{0, 1, 2, 3}, {}});
+  return c;
+}
+
+/// Two tubes round the z axis, from z = 1 to a wavy ring about 5 and on to 9, that meet smoothly but for
+/// `offset` between their radii, by angle (in quads).
+inline TrimCase tangentTubes(const std::function<double(double)>& offset) {
+  TrimCase c;
+  const auto at = [](double u, double v, double more) {
+    const double a = 2 * std::numbers::pi * u / kRings, r = 4 + 0.2 * std::sin(v) + more;
+    return Eigen::Vector3d(r * std::cos(a), r * std::sin(a), v);
+  };
+  const SplineSurface surfaces[] = {
+      closedSurface([&](double u, double v) { return at(u, v, 0); }, kRings, -1, 11, 12),
+      closedSurface([&](double u, double v) { return at(u, v, offset(u)); }, kRings, -1, 11, 12)};
+  const auto ring = [&](double height, double waves) {
+    return c.closedCurve(0, kRings, [=, surface = surfaces[0]](double t) {
+      return surface.point(surface.wrappedU(t), height + waves * std::sin(4 * std::numbers::pi * t / kRings));
+    });
+  };
+  const CurveId low = ring(1, 0), middle = ring(5, 0.4), high = ring(9, 0);
+  c.region(surfaces[0], {{{low, true}}, {{middle, false}}}, angleAndZ);
+  c.region(surfaces[1], {{{middle, true}}, {{high, false}}}, angleAndZ);
+  c.model.shells.push_back({{0, 1}, {}});
   return c;
 }
 

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "trimquad/base/disjoint_sets.h"
+#include "trimquad/base/progress.h"
+#include "trimquad/mesh/region.h"
+#include "trimquad/spline/border_edges.h"
+#include "trimquad/spline/corner_point.h"
+#include "trimquad/spline/curve_pieces.h"
+#include "trimquad/spline/fit_surface.h"
+#include "trimquad/spline/spline_model.h"
+#include "trimquad/spline/tangent_sheets.h"
+#include "trimquad/spline/trim_curve.h"
+#include "trimquad/spline/trim_loops.h"
+
+namespace trimquad {
+
+/// A boundary vertex of a chart that is a corner of the model, or a place where charts meet.
+struct CornerUse {
+  int corner, sheet, vertex;
+  std::optional<int> layoutPoint;  ///< of its region, where that is known
+  Eigen::Vector3d point;
+  Eigen::Vector2d guess;
+  Eigen::Vector2d at;  ///< on the sheet
+  int group = -1;      ///< which vertex of the result
+  friend auto key(const CornerUse& use) { return std::tuple(use.corner, use.sheet, use.vertex); }
+};
+
+struct CurveWithSides {
+  std::vector<SheetSide> sides;
+  std::vector<SampledCurve> sampled;  ///< one for all sides where they share the edge, else one a side
+  std::optional<IntersectionCurve> intersection;
+};
+
+/// Trims fitted surfaces and joins them. Everything that does not depend on how closely free edges follow
+/// their curves is settled once, in the constructor.
+class ModelTrimmer {
+ public:
+  ModelTrimmer(const Model& model, const std::vector<const GridMap*>& maps,
+               const std::vector<const FittedSurface*>& fitted, double tolerance, const Progress& progress)
+      : model_(model),
+        maps_(maps),
+        fitted_(fitted),
+        tolerance_(tolerance),
+        reach_(10 * tolerance + 1e-9 * model.diagonal),
+        progress_(progress),
+        corners_(0) {
+    makeSheets();
+    collectRuns();
+    sampleCurves();
+    placeSeams();
+    for (auto& [id, curve] : curves_) intersect(curve);
+    joinTangent();
+    placeCorners();
+  }
+
+  /// \param tolerances by region: how far free edges may be from their curves, model units
+  SplineModel trim(const std::vector<double>& tolerances) const;
+
+ private:
+  void makeSheets();
+  void collectRuns();
+  void settleSplits(std::vector<CurveSplit>& splits);
+  int sheetOf(const BoundaryRun& run) const { return firstSheet_[run.region] + run.chart; }
+
+  void sampleCurves() {
+    for (auto& [id, curve] : curves_) sample(id, curve);
+  }
+  void sample(int id, CurveWithSides& curve) {
+    // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
+    const double reach = 20 * tolerance_ + 1e-9 * model_.diagonal;
+    progress_.check();
+    curve.sampled.clear();
+    if (curve.sides.size() == 2)
+      curve.sampled.push_back(sampleCurve((*curvePieces_)[id], curve.sides, reach));
+    else
+      for (const auto& side : curve.sides)
+        curve.sampled.push_back(sampleCurve((*curvePieces_)[id], {side}, reach));
+  }
+  void intersect(CurveWithSides& curve) {
+    if (curve.sides.size() == 2)
+      curve.intersection =
+          intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
+  }
+  std::vector<TangentCorner> tangentCorners() const;
+  void joinTangent();
+
+  void placeSeams() {
+    for (int k = 0; k < int(sheets_.size()); ++k) {
+      if (!sheets_[k].period) continue;
+      std::vector<std::vector<Eigen::Vector2d>> boundary;
+      for (const auto& [id, curve] : curves_)
+        for (std::size_t side = 0; side < curve.sides.size(); ++side)
+          if (sheetOf(*curve.sides[side].run) == k)
+            boundary.push_back(curve.sides.size() == 2 ? curve.sampled[0].foot[side]
+                                                       : curve.sampled[side].foot[0]);
+      sheets_[k].surface = withSeamAt(sheets_[k].surface, seamPlace(sheets_[k], boundary));
+    }
+  }
+
+  int cornerUse(const BoundaryRun& run, const RunEnd& end) const {
+    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}, {}};
+    const auto found =
+        std::lower_bound(uses_.begin(), uses_.end(), wanted,
+                         [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
+    return int(found - uses_.begin());
+  }
+  int cornerOf(const RunEnd& end) const { return const_cast<DisjointSets&>(corners_).root(end.corner); }
+  int groupOf(const BoundaryRun& run, const RunEnd& end) const { return uses_[cornerUse(run, end)].group; }
+
+  void placeCorners();
+  CornerPoint cornerOnBorders(const std::vector<int>& members);
+  void placeInnerPoints();
+  int layoutPoint(const CornerUse& use) const;
+
+  PieceLoop borderPiece(int region, const Layout::Stretch& stretch,
+                        const std::vector<SplineEdgeId>& edges) const;
+  void appendShells(SplineModel& result) const;
+
+  const Model& model_;
+  const std::vector<const GridMap*>& maps_;
+  const std::vector<const FittedSurface*>& fitted_;
+  double tolerance_, reach_;
+  const Progress& progress_;
+  DisjointSets corners_;
+  std::vector<Sheet> sheets_;
+  std::vector<int> sheetRegion_, firstSheet_;        ///< by sheet; by region
+  std::vector<std::optional<BorderLines>> borders_;  ///< by region, where it has several charts
+  std::vector<BoundaryRun> runs_;                    ///< region by region, in the order of their loops
+  std::optional<CurvePieces> curvePieces_;
+  std::map<int, CurveWithSides> curves_;                     ///< by piece
+  std::vector<CornerUse> uses_;                              ///< ascending
+  std::vector<CornerPoint> vertices_;                        ///< by group
+  std::map<std::pair<int, int>, int> vertexOfPoint_;         ///< by region and point of its layout: group
+  std::vector<std::vector<BorderLines::Edge>> borderEdges_;  ///< by region
+  std::map<int, ChartDeviation> moved_;                      ///< by region whose surface was moved
+};
+
+}  // namespace trimquad
