@@ -60,9 +60,10 @@ struct EmbeddedTMesh {
   int length(const Side& side) const;
 };
 
-/// Throws where something does not hold that every embedding promises, also between operators: arcs meet only
-/// in nodes; each patch is a disk with its loop around it; patches cover the surface; border arcs cover its
-/// boundary; opposite sides are equally long. What is removed does not count.
+/// Throws where something does not hold that every embedding of a connected surface promises, also between
+/// operators: arcs meet only in nodes; each patch is a disk with its loop around it; patches cover the
+/// surface; border arcs cover its boundary; opposite sides are equally long. What is removed does not count.
+/// As costly as the arcs are long, and a count of the mesh's elements.
 void verify(const EmbeddedTMesh& embedded);
 
 }  // namespace trimquad
