@@ -31,8 +31,8 @@ struct EmbeddedTMesh {
   };
   /// What it took.
   struct Counters {
-    int crossings = 0;         ///< vertices that the exact arcs put into the mesh
-    int snapped = 0;           ///< of these, taken out again
+    int crossings = 0;         ///< vertices that the exact arcs have and the mesh has not
+    int snapped = 0;           ///< of these, moved to vertices of the mesh
     int splits = 0;            ///< edges and triangles split afterwards
     int inserted = 0;          ///< vertices of the result that the input has not
     int zeroArcCollapses = 0;  ///< paper's operator 1

@@ -3,6 +3,7 @@
 
 #include "tmesh/random_surfaces.h"
 #include "tmesh/tmesh_checks.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;
@@ -146,6 +147,29 @@ TEST(Embed, anArcOfLengthZeroOnTheGridNeedsNoNewVertices) {
   const EmbeddedTMesh embedded = embed(map, tmesh, quantize(tmesh, {}, progress), progress);
   EXPECT_EQ(embedded.counters.crossings, 0);
   EXPECT_EQ(embedded.counters.inserted, 0);
+}
+
+TEST(Embed, arcsWithNothingElseNearRunAlongEdges) {
+  // Two feature points far from each other, their arcs slanted against the mesh.
+  const Progress progress;
+  constexpr int kCells = 40;
+  GridMap map = planarMap(sheet(
+      kCells, kCells, [](int i, int j) { return Eigen::Vector2d(0.2 * i + 0.06 * j, 0.2 * j - 0.06 * i); }));
+  for (const int v : {10 * (kCells + 1) + 12, 29 * (kCells + 1) + 30})
+    map.featurePoints.push_back(VertexHandle(v));
+  const TMesh tmesh = partition(map, progress);
+  RefinedMesh surface;
+  const ArcPaths paths = insertArcs(map, tmesh, surface);
+  const int inserted = int(surface.mesh.n_vertices() - map.mesh.n_vertices());
+  EXPECT_GT(paths.crossings, 200);
+  EXPECT_LT(inserted, paths.crossings / 10);
+  std::set<VertexHandle> inside;
+  for (const auto& path : paths.arc)
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      EXPECT_TRUE(halfedgeBetween(surface.mesh, path[k - 1], path[k]).is_valid());
+      const bool isNew = k + 1 == path.size() || inside.insert(path[k]).second;
+      EXPECT_TRUE(isNew);
+    }
 }
 
 TEST(Embed, anArcThatSlidesKeepsItsPathAsFarAsItCan) {
