@@ -105,9 +105,10 @@ EmbeddedTMesh embed(const Parametrization& map, const TMesh& tmesh, const Quanti
   RefinedMesh& surface = embedded.surface;
   EmbeddedTMesh::Counters& counters = embedded.counters;
   ArcPaths cut = insertArcs(map, tmesh, surface);
-  counters.crossings = int(surface.mesh.n_vertices() - input.n_vertices());
+  counters.crossings = cut.crossings;
+  counters.snapped = cut.crossings - int(surface.mesh.n_vertices() - input.n_vertices());
   progress.report(0.3);
-  counters.snapped = snapCut(input, surface, cut);
+  counters.snapped += snapCut(input, surface, cut);
   progress.report(0.5);
   embedVirtualArcs(input, tmesh, surface, cut, counters.splits);
   assemble(tmesh, quantization, std::move(cut), embedded);

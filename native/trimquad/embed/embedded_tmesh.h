@@ -31,8 +31,8 @@ struct EmbeddedTMesh {
   };
   /// What it took.
   struct Counters {
-    int crossings = 0;         ///< vertices that the exact arcs put into the mesh
-    int snapped = 0;           ///< of these, taken out again
+    int crossings = 0;         ///< vertices that the exact arcs have and the mesh has not
+    int snapped = 0;           ///< of these, moved to vertices of the mesh
     int splits = 0;            ///< edges and triangles split afterwards
     int inserted = 0;          ///< vertices of the result that the input has not
     int zeroArcCollapses = 0;  ///< paper's operator 1
@@ -60,9 +60,10 @@ struct EmbeddedTMesh {
   int length(const Side& side) const;
 };
 
-/// Throws where something does not hold that every embedding promises, also between operators: arcs meet only
-/// in nodes; each patch is a disk with its loop around it; patches cover the surface; border arcs cover its
-/// boundary; opposite sides are equally long. What is removed does not count.
+/// Throws where something does not hold that every embedding of a connected surface promises, also between
+/// operators: arcs meet only in nodes; each patch is a disk with its loop around it; patches cover the
+/// surface; border arcs cover its boundary; opposite sides are equally long. What is removed does not count.
+/// As costly as the arcs are long, and a count of the mesh's elements.
 void verify(const EmbeddedTMesh& embedded);
 
 }  // namespace trimquad

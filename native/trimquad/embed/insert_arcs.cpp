@@ -87,6 +87,8 @@ class Insertion {
     for (const auto& node : tmesh_.nodes)
       result_.node.push_back(node.place ? std::optional(vertexAt(*node.place)) : std::nullopt);
     for (const auto& arc : tmesh_.arcs) result_.arc.push_back(pathOf(arc));
+    result_.crossings = int(origins_.size());
+    snapLonely();
     for (const auto& red : tmesh_.redSegments) result_.redSegment.push_back(pathOf(red));
     sortAlongEdges();
     cutTriangles();
@@ -168,6 +170,117 @@ class Insertion {
     return path;
   }
 
+  // --- lonely crossings
+
+  /// What arcs do in a triangle.
+  struct Load {
+    int segments = 0, crossings = 0;  ///< crossings: on its sides
+    bool isLonely() const { return segments == 1 && crossings <= 2; }
+  };
+
+  /// Crossings of edges on both sides of which nothing else passes need not be put into the mesh at all:
+  /// their arcs may as well run through an end of the edge that no other arc uses, and so along edges. (What
+  /// `snap` would do with most of them)
+  void snapLonely() {
+    load_.resize(input_.n_faces());
+    for (const Segment& s : segments_) ++load_[s.triangle.idx()].segments;
+    for (const EdgeHandle e : crossed_)
+      for (int k = onEdge_[e.idx()]; k != kNone; k = crossings_[k].before)
+        for (const int side : {0, 1})
+          if (const auto f = input_.face_handle(input_.halfedge_handle(e, side)); f.is_valid())
+            ++load_[f.idx()].crossings;
+    taken_.assign(input_.n_vertices(), false);
+    for (const auto& node : result_.node)
+      if (node && isOfInput(*node)) taken_[node->idx()] = true;
+    for (const EdgePath& path : result_.arc)
+      for (const VertexHandle v : path)
+        if (isOfInput(v)) taken_[v.idx()] = true;
+    standIn_.assign(origins_.size(), VertexHandle());
+    for (EdgePath& path : result_.arc)
+      if (!path.empty()) snapLonely(path);
+    std::erase_if(segments_, [&](Segment& s) { return !followStandIns(s); });
+    dropSnapped();
+  }
+
+  bool isOfInput(VertexHandle v) const { return std::size_t(v.idx()) < input_.n_vertices(); }
+  std::size_t added(VertexHandle v) const { return std::size_t(v.idx()) - input_.n_vertices(); }
+
+  /// Inside an arc, whose vertices in edges are no nodes.
+  void snapLonely(EdgePath& path) {
+    VertexHandle last;
+    std::size_t length = 1;
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      VertexHandle v = path[k];
+      const bool isInside = k + 1 < path.size() && !isOfInput(v);
+      last = isInside ? freeEnd(origins_[added(v)], last) : VertexHandle();
+      if (last.is_valid()) {
+        standIn_[added(v)] = last;
+        taken_[last.idx()] = true;
+        v = last;
+      }
+      if (v != path[length - 1]) path[length++] = v;
+    }
+    path.resize(length);
+  }
+
+  /// The nearest end of the edge of a lonely crossing that is free, or taken by `last`, through which the
+  /// same arc comes.
+  VertexHandle freeEnd(const Origin& crossing, VertexHandle last) const {
+    const auto* e = std::get_if<EdgeHandle>(&crossing.element);
+    if (!e || input_.is_boundary(*e)) return VertexHandle();
+    for (const int side : {0, 1})
+      if (!load_[input_.face_handle(input_.halfedge_handle(*e, side)).idx()].isLonely())
+        return VertexHandle();
+    const HalfedgeHandle h = input_.halfedge_handle(*e, crossing.weights[1] > 0.5 ? 0 : 1);
+    for (const VertexHandle v : {input_.to_vertex_handle(h), input_.from_vertex_handle(h)})
+      if (v == last || (!taken_[v.idx()] && !input_.is_boundary(v))) return v;
+    return VertexHandle();
+  }
+
+  /// Moves the ends of a segment; whether it still goes through its triangle.
+  bool followStandIns(Segment& s) const {
+    bool moved = false;
+    for (VertexHandle* v : {&s.from, &s.to})
+      if (!isOfInput(*v) && standIn_[added(*v)].is_valid()) *v = standIn_[added(*v)], moved = true;
+    if (!moved) return true;
+    if (isOfInput(s.from) && isOfInput(s.to)) return false;
+    for (const auto& [corner, other] : {std::pair(s.from, s.to), std::pair(s.to, s.from)})
+      if (isOfInput(corner)) return !closureHolds(input_, origins_[added(other)], {corner});
+    return true;
+  }
+
+  /// Numbers the new vertices without those that were snapped.
+  void dropSnapped() {
+    std::vector<VertexHandle> renamed(origins_.size());
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < origins_.size(); ++k) {
+      if (standIn_[k].is_valid()) continue;
+      origins_[count] = origins_[k], places_[count] = places_[k];
+      renamed[k] = VertexHandle(int(input_.n_vertices() + count++));
+    }
+    origins_.resize(count), places_.resize(count);
+    const auto rename = [&](VertexHandle& v) {
+      if (!isOfInput(v)) v = renamed[added(v)];
+    };
+    for (auto& node : result_.node)
+      if (node) rename(*node);
+    for (EdgePath& path : result_.arc)
+      for (VertexHandle& v : path) rename(v);
+    for (Segment& s : segments_) rename(s.from), rename(s.to);
+    for (Crossing& crossing : crossings_) rename(crossing.vertex);
+    for (const EdgeHandle e : crossed_) {
+      int* next = &onEdge_[e.idx()];
+      while (*next != kNone)
+        if (crossings_[*next].vertex.is_valid())
+          next = &crossings_[*next].before;
+        else
+          *next = crossings_[*next].before;
+    }
+    std::erase_if(crossed_, [&](EdgeHandle e) { return onEdge_[e.idx()] == kNone; });
+  }
+
+  // --- cutting triangles
+
   /// The vertices on each edge in the direction of its halfedge 0; from now on `onEdge_` says where they
   /// begin in `along_`.
   void sortAlongEdges() {
@@ -208,6 +321,7 @@ class Insertion {
   void cut(FaceHandle f, std::span<const Segment> segments) {
     findOutline(f);
     if (segments.empty()) return triangulate(f, 0, 0);
+    if (segments.size() == 1 && cutInTwo(f, segments.front())) return;
     outline_.swap(cells_);
     addSpokes(f, segments);
     for (std::size_t first = 0; first < spokes_.size(); ++first) {
@@ -230,6 +344,17 @@ class Insertion {
         cells_.push_back({along_[k], {Line::Kind::Side, side}});
       if (input_.halfedge_handle(e, 0) != h) std::reverse(cells_.begin() + long(first), cells_.end());
     }
+  }
+
+  /// The outline, from one of its vertices to another.
+  bool cutInTwo(FaceHandle f, const Segment& segment) {
+    std::size_t i = cells_.size(), j = i;
+    for (std::size_t k = 0; k < cells_.size(); ++k)
+      if (cells_[k].vertex == segment.from || cells_[k].vertex == segment.to) (i < cells_.size() ? j : i) = k;
+    if (j == cells_.size()) return false;
+    triangulate(f, splitCell(0, i, j, {Line::Kind::Cut, kNone}), 0);
+    triangulate(f, 0, 0);
+    return true;
   }
 
   int numberOf(VertexHandle v) const {
@@ -311,14 +436,19 @@ class Insertion {
       return;
     }
     const auto [i, j] = shortestDiagonal(begin);
-    const Line diagonal{Line::Kind::Cut, cuts};
-    // What is on the left of the diagonal goes to the end, what is on the right stays.
+    triangulate(f, splitCell(begin, i, j, {Line::Kind::Cut, cuts}), cuts + 1);
+    triangulate(f, begin, cuts + 1);
+  }
+
+  /// What is on the left of the diagonal of the last cell goes to the end, what is on the right stays.
+  /// Returns where the former begins.
+  std::size_t splitCell(std::size_t begin, std::size_t i, std::size_t j, const Line& diagonal) {
+    const std::size_t n = cells_.size() - begin;
     for (std::size_t k = i; k < j; ++k) cells_.push_back(CellCorner(cells_[begin + k]));
     cells_.push_back({cells_[begin + j].vertex, diagonal});
     cells_[begin + i].side = diagonal;
     cells_.erase(cells_.begin() + long(begin + i) + 1, cells_.begin() + long(begin + j));
-    triangulate(f, begin + n - (j - i - 1), cuts + 1);
-    triangulate(f, begin, cuts + 1);
+    return begin + n - (j - i - 1);
   }
 
   /// Positions of its ends.
@@ -350,8 +480,11 @@ class Insertion {
   std::vector<VertexHandle> along_;  ///< those on each edge, followed by an invalid one
   std::map<SurfacePoint, VertexHandle> inTriangle_;
   std::vector<EdgeHandle> crossed_;
-  std::vector<Segment> segments_;  ///< through triangles
-  std::vector<CellCorner> cells_;  ///< being triangulated, the next one last
+  std::vector<Segment> segments_;      ///< through triangles
+  std::vector<Load> load_;             ///< by triangle
+  std::vector<bool> taken_;            ///< by vertex of the input: an arc runs through it
+  std::vector<VertexHandle> standIn_;  ///< by new vertex: that of the input it is snapped to, if any
+  std::vector<CellCorner> cells_;      ///< being triangulated, the next one last
   // Of the triangle that is being cut:
   std::vector<CellCorner> outline_;
   std::vector<VertexHandle> vertices_;

@@ -122,7 +122,36 @@ class ZeroCollapse {
   PatchCorner cornerAtStart(HalfArc h) const { return {lastHalfedge(previousInLoop(h)), firstHalfedge(h)}; }
   PatchCorner cornerAtEnd(HalfArc h) const { return cornerAtStart(nextInLoop(h)); }
 
-  EdgePath connect(PatchCorner from, PatchCorner to) { return search_.connect(from, to, t_.counters.splits); }
+  PathSearch::Way connect(PatchCorner from, const std::vector<Landing>& landings) {
+    return search_.connect(from, landings, t_.counters.splits);
+  }
+
+  /// Along the half-arc against its direction, its patch's corners in its inner vertices and its start, where
+  /// the way ends.
+  std::vector<Landing> landingsBackwards(HalfArc h) const {
+    std::vector<Landing> landings;
+    const auto along = t_.halfedges(h);
+    for (std::size_t k = along.size() - 1; k > 0; --k) landings.push_back({{along[k - 1], along[k]}});
+    landings.push_back({cornerAtStart(h)});
+    setOnward(landings);
+    return landings;
+  }
+
+  /// In its direction, to its end.
+  std::vector<Landing> landingsForwards(HalfArc h) const {
+    std::vector<Landing> landings;
+    const auto along = t_.halfedges(h);
+    for (std::size_t k = 1; k < along.size(); ++k) landings.push_back({{along[k - 1], along[k]}});
+    landings.push_back({cornerAtEnd(h)});
+    setOnward(landings);
+    return landings;
+  }
+
+  void setOnward(std::vector<Landing>& landings) const {
+    const auto place = [&](const Landing& l) { return mesh_.point(mesh_.from_vertex_handle(l.corner.out)); };
+    for (std::size_t k = landings.size() - 1; k > 0; --k)
+      landings[k - 1].onward = landings[k].onward + (place(landings[k]) - place(landings[k - 1])).norm();
+  }
 
   void setPath(HalfArc h, EdgePath path) {
     if (!h.forward) std::reverse(path.begin(), path.end());
@@ -204,9 +233,12 @@ class ZeroCollapse {
   bool slidesAlongCurve(HalfArc a, HalfArc b) const { return t_[a.arc].onCurve && t_[b.arc].onCurve; }
 
   /// The arc `b`, which ends in the patch's corner where `a` starts, is moved to end where `a` does: from now
-  /// on the patch beyond it borders on `a`.
+  /// on the patch beyond it borders on `a`. It leaves its path only where that is the shortest way.
   void slideBefore(HalfArc b, HalfArc a) {
-    EdgePath path = connect(cornerAtStart(b), cornerAtEnd(a));
+    const auto [onward, landing] = connect(cornerAtEnd(a), landingsBackwards(b));
+    EdgePath path = t_.path(b);
+    path.resize(path.size() - 1 - landing);
+    path.insert(path.end(), onward.rbegin() + 1, onward.rend());
     setOccupied(b.arc, false);
     removeFromLoop(a);
     insertInLoop(a, b.opposite(), true);
@@ -216,7 +248,9 @@ class ZeroCollapse {
 
   /// The mirror image: `a` ends where `b` starts; now that starts where `a` does.
   void slideAfter(HalfArc a, HalfArc b) {
-    EdgePath path = connect(cornerAtStart(a), cornerAtEnd(b));
+    auto [path, landing] = connect(cornerAtStart(a), landingsForwards(b));
+    const EdgePath old = t_.path(b);
+    path.insert(path.end(), old.begin() + long(landing) + 2, old.end());
     setOccupied(b.arc, false);
     removeFromLoop(a);
     insertInLoop(a, b.opposite(), false);
@@ -287,7 +321,7 @@ class ZeroCollapse {
     const HalfArc first = t_[near.arc].length > at ? splitArc(near, at).first : near;
     const HalfArc last = t_[far.arc].length > at ? splitArc(far, t_[far.arc].length - at).second : far;
     const PatchCorner from = cornerAtEnd(first), to = cornerAtStart(last);
-    EdgePath path = connect(from, to);
+    EdgePath path = connect(from, {{to}}).path;
     const ArcId zero{int(t_.arcs.size())};
     t_.arcs.push_back({t_.end(first), t_.start(last), 0, false, false, {}});
     patchOf_.resize(2 * t_.arcs.size());

@@ -32,18 +32,18 @@ struct Later {
 
 class Search {
  public:
-  Search(const Dual& dual, const DoubleCover& cover, const SeparationTest& separation, const ArcLengths& q,
+  Search(const Dual& dual, const DoubleCover& cover, const FaultSearch& faults, const ArcLengths& q,
          long long mostWork)
       : dual_(dual),
         cover_(cover),
-        separation_(separation),
+        faults_(faults),
         best_(q),
         bestObjective_(cover.objective()(q)),
         mostWork_(mostWork) {}
 
-  Optimum run(const DeviationFlow& flow, const Progress& progress) && {
+  Optimum run(const LengthBounds& bounds, const DeviationFlow& flow, const Progress& progress) && {
     if (flow.objective < bestObjective_ - kEqual)
-      open_.push(std::make_shared<Branch>(Branch{boundsOfSeparation(dual_, separation_), flow, count_++}));
+      open_.push(std::make_shared<Branch>(Branch{bounds, flow, count_++}));
     int nextDescent = 0;
     while (!open_.empty()) {
       const BranchPointer branch = open_.top();
@@ -52,7 +52,7 @@ class Search {
         continue;
       }
       if (branch->flow.objective >= bestObjective_ - kEqual) break;
-      if (isWorkDone()) return {best_, branch->flow.objective, false};
+      if (isWorkDone()) return {best_, branch->flow.objective, false, work()};
       open_.pop();
       BranchPointer next = split(*branch, progress);
       if (count_ < nextDescent) continue;
@@ -60,11 +60,12 @@ class Search {
         next = split(*next, progress);
       nextDescent = count_ + kBranchesPerDescent;
     }
-    return {best_, bestObjective_, true};
+    return {best_, bestObjective_, true, work()};
   }
 
  private:
-  bool isWorkDone() const { return count_ * (long long)(best_.size()) > mostWork_; }
+  long long work() const { return count_ * (long long)(best_.size()); }
+  bool isWorkDone() const { return work() > mostWork_; }
 
   /// Adds the parts that make up a branch. Returns the one with the least bound, none where there is none.
   BranchPointer split(Branch& branch, const Progress& progress) {
@@ -110,7 +111,7 @@ class Search {
   void splitOnCollapse(const Branch& branch) {
     ArcLengths q;
     for (const int twice : branch.flow.twice) q.push_back(twice / 2);
-    const auto faults = separation_.faults(q);
+    const auto faults = faults_(q);
     if (faults.empty()) {
       const double objective = cover_.objective()(q);
       if (objective < bestObjective_) best_ = q, bestObjective_ = objective;
@@ -176,7 +177,7 @@ class Search {
 
   const Dual& dual_;
   const DoubleCover& cover_;
-  const SeparationTest& separation_;
+  const FaultSearch& faults_;
   ArcLengths best_;
   double bestObjective_;
   long long mostWork_;
@@ -187,10 +188,10 @@ class Search {
 
 }  // namespace
 
-Optimum leastLengths(const Dual& dual, const DoubleCover& cover, const SeparationTest& separation,
-                     const ArcLengths& q, const DeviationFlow& flow, long long mostWork,
-                     const Progress& progress) {
-  return Search(dual, cover, separation, q, mostWork).run(flow, progress);
+Optimum leastLengths(const Dual& dual, const DoubleCover& cover, const FaultSearch& faults,
+                     const ArcLengths& q, const LengthBounds& bounds, const DeviationFlow& flow,
+                     long long mostWork, const Progress& progress) {
+  return Search(dual, cover, faults, q, mostWork).run(bounds, flow, progress);
 }
 
 }  // namespace trimquad

@@ -22,17 +22,18 @@ struct Quantization {
   /// "greedy"; "optimal" where proven; "bounded" where the search for a proof was given up
   std::string method;
   double objective = 0;   ///< see `Objective`
-  double lowerBound = 0;  ///< no separating lengths have a smaller objective
+  double lowerBound = 0;  ///< no lengths that keep the same rules have a smaller objective
   int steps = 0;          ///< changes that improved the objective
-  int widened = 0;        ///< and those that made room around handles and necks afterwards
+  int widened = 0;        ///< and those that made room around handles and necks
   int zeroArcs = 0, zeroPatches = 0;
 };
 
 /// Lengths near the arcs' target lengths: strictly positive ones, improved by elementary circuits as long as
 /// they stay separating; the least-cost flow, with its collapses repaired and improved in the same way; then,
 /// from the better of the two, a search that branches from the flow, short in general and long with
-/// `optimal`. Afterwards `widenLoops`, unless it is switched off. Throws Error(Stage, "quantize") where the
-/// T-mesh admits no positive lengths.
+/// `optimal`, and where that proves nothing in the neighbourhoods of arcs. Afterwards `widenLoops`, unless it
+/// is switched off, and the same search among lengths without short loops. Throws Error(Stage, "quantize")
+/// where the T-mesh admits no positive lengths.
 Quantization quantize(const TMesh& tmesh, const QuantizationOptions& options, const Progress& progress);
 
 }  // namespace trimquad

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <tuple>
 
 #include "trimquad/base/disjoint_sets.h"
@@ -48,10 +49,33 @@ class GridGraph {
     for (auto first = quads_.begin(); first != quads_.end();) {
       const auto end =
           std::find_if(first, quads_.end(), [&](const Quad& q) { return q.corners != first->corners; });
-      if (end - first > 1) loops.push_back({{0, 0, first->across}});
+      const auto& c = first->corners;
+      if (end - first > 1) loops.push_back({{c[0], c[1], first->across}, {c[2], c[3], first->across}});
       first = end;
     }
     return loops;
+  }
+
+  /// The arcs of all patches around the points of a short loop, first those that make it longer.
+  std::vector<ArcId> arcsAround(const std::vector<Edge>& loop) {
+    std::set<int> points;
+    std::set<ArcId> across, others;
+    for (const auto& edge : loop) {
+      points.insert({edge.low, edge.high});
+      across.insert(edge.across.begin(), edge.across.end());
+    }
+    for (const auto& patch : tmesh_.patches) {
+      bool touches = false;
+      for (const auto& side : patch.sides)
+        for (const int point : walk(side).points) touches = touches || points.contains(points_.root(point));
+      if (!touches) continue;
+      for (const auto& side : patch.sides)
+        for (const HalfArc h : side)
+          if (!across.contains(h.arc)) others.insert(h.arc);
+    }
+    std::vector<ArcId> all(across.begin(), across.end());
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
   }
 
  private:
@@ -238,6 +262,13 @@ int widenLoops(const Dual& dual, const Objective& objective, const SeparationTes
   }
   q = before;
   return 0;
+}
+
+std::vector<Collapse> shortLoopFaults(const TMesh& tmesh, const ArcLengths& q) {
+  GridGraph grid(tmesh, q);
+  std::vector<Collapse> faults;
+  for (const auto& loop : grid.shortLoops()) faults.push_back({{}, {}, grid.arcsAround(loop)});
+  return faults;
 }
 
 bool hasShortLoops(const TMesh& tmesh, const ArcLengths& q) {

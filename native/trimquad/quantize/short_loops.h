@@ -16,7 +16,11 @@ namespace trimquad {
 int widenLoops(const Dual& dual, const Objective& objective, const SeparationTest& separation, ArcLengths& q,
                const Progress& progress);
 
-/// Whether there are such edges or quads.
+/// Such edges and quads, each as a fault that stays as long as the arcs of all patches around its points keep
+/// their lengths.
+std::vector<Collapse> shortLoopFaults(const TMesh& tmesh, const ArcLengths& q);
+
+/// Whether there are any.
 bool hasShortLoops(const TMesh& tmesh, const ArcLengths& q);
 
 }  // namespace trimquad

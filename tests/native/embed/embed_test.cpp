@@ -3,6 +3,7 @@
 
 #include "tmesh/random_surfaces.h"
 #include "tmesh/tmesh_checks.h"
+#include "trimquad/mesh/collapse_edge.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;
@@ -33,6 +34,38 @@ void expectSubdivision(const SurfaceMesh& input, const RefinedMesh& refined) {
   for (const double a : area) EXPECT_NEAR(a, 1, 1e-9);
 }
 
+/// The triangles within each patch's loop, reached from one to the next, are an open disk, and all there are.
+void expectDisks(const EmbeddedTMesh& embedded) {
+  const auto& mesh = embedded.surface.mesh;
+  std::set<EdgeHandle> arcEdges;
+  std::set<VertexHandle> arcVertices;
+  for (std::size_t a = 0; a < embedded.arcs.size(); ++a) {
+    if (embedded.arcs[a].removed) continue;
+    for (const auto h : embedded.halfedges({ArcId{int(a)}, true})) arcEdges.insert(mesh.edge_handle(h));
+    arcVertices.insert(embedded.arcs[a].path.begin(), embedded.arcs[a].path.end());
+  }
+  std::set<FaceHandle> covered;
+  for (std::size_t p = 0; p < embedded.patches.size(); ++p) {
+    if (embedded.patches[p].removed) continue;
+    std::vector<FaceHandle> inside;
+    std::set<EdgeHandle> edges;
+    std::set<VertexHandle> vertices;
+    const auto reach = [&](FaceHandle f) {
+      if (covered.insert(f).second) inside.push_back(f);
+    };
+    reach(mesh.face_handle(embedded.halfedges(embedded.loop(PatchId{int(p)}).front()).front()));
+    for (std::size_t k = 0; k < inside.size(); ++k)
+      for (const auto h : mesh.fh_range(inside[k])) {
+        if (!arcVertices.contains(mesh.to_vertex_handle(h))) vertices.insert(mesh.to_vertex_handle(h));
+        if (arcEdges.contains(mesh.edge_handle(h))) continue;
+        edges.insert(mesh.edge_handle(h));
+        reach(mesh.opposite_face_handle(h));
+      }
+    EXPECT_EQ(int(vertices.size()) - int(edges.size()) + int(inside.size()), 1);
+  }
+  for (const auto f : mesh.all_faces()) EXPECT_NE(covered.contains(f), mesh.status(f).deleted());
+}
+
 /// What an embedding promises beyond `verify`.
 void expectEmbedding(const Parametrization& map, const TMesh& tmesh, const EmbeddedTMesh& embedded) {
   for (const auto& arc : embedded.arcs) EXPECT_GT(arc.length, 0);
@@ -50,6 +83,22 @@ void expectEmbedding(const Parametrization& map, const TMesh& tmesh, const Embed
   for (const auto e : refinedEdges(map.mesh, embedded.surface, map.aligned))
     EXPECT_TRUE(onCurves.contains(e));
   expectSubdivision(map.mesh, embedded.surface);
+  expectDisks(embedded);
+}
+
+/// A tube of three columns between two borders of one arc each.
+EmbeddedTMesh tubeBetweenLoops() {
+  EmbeddedTMesh tube;
+  tube.surface =
+      unrefined(buildSurfaceMesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}},
+                                  {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}}));
+  for (const int first : {0, 3}) {
+    const VertexHandle a(first), b(first + 1), c(first + 2);
+    const NodeId node{int(tube.nodes.size())};
+    tube.nodes.push_back({a, false, true});
+    tube.arcs.push_back({node, node, 1, true, true, {a, b, c, a}});
+  }
+  return tube;
 }
 
 }  // namespace
@@ -65,7 +114,7 @@ TEST(Embed, randomSurfaces) {
     try {
       const EmbeddedTMesh embedded = embed(map, tmesh, quantization, progress, [&](const EmbeddedTMesh& e) {
         verify(e);
-        ++operations;
+        if (++operations % 10 == 0) expectDisks(e);
       });
       expectEmbedding(map, tmesh, embedded);
     } catch (const std::exception& error) {
@@ -100,6 +149,48 @@ TEST(Embed, anArcOfLengthZeroOnTheGridNeedsNoNewVertices) {
   EXPECT_EQ(embedded.counters.inserted, 0);
 }
 
+TEST(Embed, arcsWithNothingElseNearRunAlongEdges) {
+  // Two feature points far from each other, their arcs slanted against the mesh.
+  const Progress progress;
+  constexpr int kCells = 40;
+  GridMap map = planarMap(sheet(
+      kCells, kCells, [](int i, int j) { return Eigen::Vector2d(0.2 * i + 0.06 * j, 0.2 * j - 0.06 * i); }));
+  for (const int v : {10 * (kCells + 1) + 12, 29 * (kCells + 1) + 30})
+    map.featurePoints.push_back(VertexHandle(v));
+  const TMesh tmesh = partition(map, progress);
+  RefinedMesh surface;
+  const ArcPaths paths = insertArcs(map, tmesh, surface);
+  const int inserted = int(surface.mesh.n_vertices() - map.mesh.n_vertices());
+  EXPECT_GT(paths.crossings, 200);
+  EXPECT_LT(inserted, paths.crossings / 10);
+  std::set<VertexHandle> inside;
+  for (const auto& path : paths.arc)
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      EXPECT_TRUE(halfedgeBetween(surface.mesh, path[k - 1], path[k]).is_valid());
+      const bool isNew = k + 1 == path.size() || inside.insert(path[k]).second;
+      EXPECT_TRUE(isNew);
+    }
+}
+
+TEST(Embed, anArcThatSlidesKeepsItsPathAsFarAsItCan) {
+  // Two feature points half a quad apart in both directions, on finer and finer meshes: of their arcs, which
+  // cross the whole sheet side by side, each pair becomes one.
+  const Progress progress;
+  std::vector<int> splits;
+  for (const int n : {24, 48, 96}) {
+    GridMap map = planarMap(sheet(n, n, [&](int i, int j) {
+      return Eigen::Vector2d(6.0 * i / n + 0.1 * j / n, 6.0 * j / n - 0.1 * i / n);
+    }));
+    const int near = n / 2 * (n + 1) + n / 2, step = n / 24;
+    for (const int v : {near, near + step * (n + 2)}) map.featurePoints.push_back(VertexHandle(v));
+    const TMesh tmesh = partition(map, progress);
+    const EmbeddedTMesh embedded = embed(map, tmesh, quantize(tmesh, {}, progress), progress);
+    EXPECT_GT(embedded.counters.zeroArcCollapses, 0);
+    splits.push_back(embedded.counters.splits);
+  }
+  EXPECT_LE(splits.back(), 2 * splits.front());
+}
+
 TEST(Embed, stopsWhenCancelled) {
   const Progress running;
   const GridMap map = randomMap(7);
@@ -108,4 +199,24 @@ TEST(Embed, stopsWhenCancelled) {
   Progress progress;
   progress.cancel();
   EXPECT_THROW(embed(map, tmesh, quantization, progress), Error);
+}
+
+TEST(Embed, aPatchThatIsNoDiskIsFound) {
+  // Two loops that are complete, around the same tube.
+  EmbeddedTMesh tube = tubeBetweenLoops();
+  for (const bool isTop : {false, true}) {
+    const HalfArc loop{ArcId{isTop}, !isTop};
+    tube.patches.push_back({{{{loop}, {}, {loop}, {}}}});
+    tube.patches.back().sides[2].clear();
+    tube.arcs[isTop].length = 0;
+  }
+  EXPECT_ANY_THROW(verify(tube));
+  // Cut open between its borders it is one.
+  tube.arcs.push_back({NodeId{0}, NodeId{1}, 1, false, false, {VertexHandle(0), VertexHandle(3)}});
+  const HalfArc bottom{ArcId{0}, true}, top{ArcId{1}, false}, cut{ArcId{2}, true};
+  tube.patches = {{{{{bottom}, {cut}, {top}, {cut.opposite()}}}}};
+  EXPECT_NO_THROW(verify(tube));
+  // What a removed patch leaves is none.
+  tube.patches.front().removed = true;
+  EXPECT_ANY_THROW(verify(tube));
 }
