@@ -42,6 +42,10 @@ constexpr double kFoldEmphasis = 20;
 constexpr double kWorstPart = 0.3;
 /// Refinements in a row that may bring less than a fifth.
 constexpr int kPatience = 4;
+/// The same of several surfaces that stay farther away than so many tolerances: a crease that runs across
+/// charts, or noise, which knots without end would follow.
+constexpr int kPatienceFar = 1;
+constexpr double kFar = 5;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
 /// Part of the samples at which the surface may be turned over in folds within what is enough, where no
@@ -444,7 +448,9 @@ void FitRounds::refine() {
   thorough_ = stalled();
   atRefinement_ = best_;
   if (idle_ > 0) giveWay();
-  if (idle_ > kPatience || !insertKnots() || poles() > policy_.maxPoles) throw unreachable();
+  const bool far = policy_.several && best_ > kFar * tolerance_;
+  if (idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > policy_.maxPoles)
+    throw unreachable();
 }
 
 /// The surfaces, which are within the tolerance, or such over fewer knots. Knots are halved where they do not

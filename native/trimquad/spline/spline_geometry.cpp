@@ -15,9 +15,14 @@ int knotSpan(std::span<const double> knots, int degree, double t) {
   return int(std::upper_bound(begin, end, t) - knots.begin()) - 1;
 }
 
-void basisFunctions(std::span<const double> knots, int degree, double t, int order, BasisFunctions& result) {
-  TRIMQUAD_ASSERT(degree >= 1 && degree <= kMaxSplineDegree && order <= kMaxSplineDegree);
-  constexpr int size = kMaxSplineDegree + 1;
+namespace {
+
+/// \tparam Degree where the compiler is to know it: most of the time of a fit goes here
+template <int Degree = 0>
+void basisFunctionsOfDegree(std::span<const double> knots, int runtimeDegree, double t, int order,
+                            BasisFunctions& result) {
+  constexpr int size = (Degree > 0 ? Degree : kMaxSplineDegree) + 1;
+  const int degree = Degree > 0 ? Degree : runtimeDegree;
   const int span = knotSpan(knots, degree, t), computed = std::min(order, degree);
   result.first = span - degree;
   double table[size][size], left[size], right[size];
@@ -64,6 +69,20 @@ void basisFunctions(std::span<const double> knots, int degree, double t, int ord
     for (int j = 0; j <= degree; ++j) result.value[k][j] *= factor;
   for (int k = computed + 1; k <= order; ++k)
     for (int j = 0; j <= degree; ++j) result.value[k][j] = 0;
+}
+
+}  // namespace
+
+void basisFunctions(std::span<const double> knots, int degree, double t, int order, BasisFunctions& result) {
+  TRIMQUAD_ASSERT(degree >= 1 && degree <= kMaxSplineDegree && order <= kMaxSplineDegree);
+  switch (degree) {
+    case 2:
+      return basisFunctionsOfDegree<2>(knots, degree, t, order, result);
+    case 3:
+      return basisFunctionsOfDegree<3>(knots, degree, t, order, result);
+    default:
+      return basisFunctionsOfDegree(knots, degree, t, order, result);
+  }
 }
 
 int polarForm(std::span<const double> knots, int degree, double at, std::span<const double> arguments,

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <random>
+#include <regex>
 
 #include "quads/sample_maps.h"
 #include "spline/analytic_region.h"
 #include "spline/fit_figures.h"
+#include "trimquad/base/error.h"
 
 namespace trimquad {
 namespace {
@@ -61,6 +64,27 @@ TEST(ChartsFit, wavySheetOfFiveChartsWithStaggeredTJoints) {
     EXPECT_LE(f.gap, 1e-14);
     EXPECT_LE(f.regularJump, 1e-3);
     EXPECT_EQ(f.folds, 0);
+  }
+}
+
+TEST(ChartsFit, surfacesThatStayFarFromNoiseGiveUpBeforeTheyFollowIt) {
+  auto sheet = wavySheet(31);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> noise(-0.03, 0.03);
+  sheet.surface = nullptr;
+  sheet.point = [&, smooth = sheet.point](double u, double v) -> Eigen::Vector3d {
+    return smooth(u, v) + noise(random) * Eigen::Vector3d::UnitZ();
+  };
+  sheet.build();
+  const FitOptions options{.tolerance = 1e-3, .bisections = {{0}, {0}, {2}, {2}}};
+  try {
+    fitSurface(sheet.region, sheet.map, options, Progress());
+    FAIL() << "the noise is thirty tolerances";
+  } catch (const Error& error) {
+    std::smatch found;
+    const std::string message = error.what();
+    ASSERT_TRUE(std::regex_search(message, found, std::regex("with ([0-9]+) poles"))) << message;
+    EXPECT_LT(std::stoi(found[1]), 5000) << message;
   }
 }
 
