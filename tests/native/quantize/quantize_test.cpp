@@ -198,7 +198,7 @@ TEST(Quantize, noTwoEdgesOfTheGridJoinTheSamePoints) {
     if (after.widened > 0) expectNoWorseThanWidened(tmesh, before, after);
     narrow += after.widened > 0;
   }
-  EXPECT_GT(narrow, 0);
+  EXPECT_GE(narrow, int(sample::rounds(150) / 100));  // few inputs may have none
 }
 
 TEST(Quantize, aTorusHasThreeQuadsAroundAtLeast) {
@@ -269,7 +269,7 @@ TEST(Quantize, aShortLoopStaysWhileTheArcsOfItsFaultDo) {
       }
     }
   }
-  EXPECT_GT(changed, 0);
+  EXPECT_GE(changed, int(sample::rounds(100) / 100));  // few inputs may have none
 }
 
 TEST(Quantize, neighbourhoodsFindTheBestLengthsOfSmallTMeshes) {
