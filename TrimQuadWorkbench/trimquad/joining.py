@@ -9,8 +9,7 @@ from .native import load
 # A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
 # again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), with the
 # parameters closer to the map's, with both, cut in two where it bends most, smoother as far as the tolerance allows (one of
-# several; the others stay as they are, so that fewer are at fault each time), to this part of the
-# tolerance.
+# several; the others stay as they are, so that fewer are at fault each time), to this part of the tolerance.
 REFITS = (
     {"smallest_rectangle": True},
     {"slides": False},

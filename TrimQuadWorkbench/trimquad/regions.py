@@ -50,7 +50,8 @@ class RegionResult:
     name, region (its triangles), guidance (directions from a file), field, seamless, tmesh, quantization, grid, quads,
     fitted: values of the compiled stages; field_edits: fields tried in vain; seconds: stage name -> seconds, those of
     attempts that failed included;
-    cut_from: name of the region that it is a part of, None for a whole; cuts_left: how many ways of cutting it are left if it fails;
+    cut_from: name of the region that it is a part of, None for a whole; cuts_left: how many ways of cutting it are left if
+    it fails;
     holes: what became of boundary loops shorter than `fill_holes`; bridged: the region with its holes bridged, which
     field, seamless and tmesh are of (the region itself where no hole is).
     """

@@ -52,10 +52,7 @@ class InnerEdges {
     for (const int t : triangles_)
       for (const int s : shape_.mesh.triangles[t].side)
         if (origin_.features.crease[s]) bent.insert(*shape_.mesh.sides[s].cadEdge);
-    std::vector<int> chosen;
-    for (const auto& inner : edges_)
-      if (inner.faces.size() == 2 && bent.count(inner.edge)) chosen.push_back(inner.edge);
-    return separating(chosen);
+    return separating([&](const InnerEdge& inner) { return bent.count(inner.edge) > 0; });
   }
 
   /// Around the faces within `reach` of a place.
@@ -73,18 +70,12 @@ class InnerEdges {
     double nearest = HUGE_VAL;
     for (const auto& [face, away] : distance) nearest = std::min(nearest, away);
     const auto isThere = [&](int face) { return distance.at(face) <= nearest + reach; };
-    std::vector<int> chosen;
-    for (const auto& inner : edges_)
-      if (inner.faces.size() == 2 && std::any_of(inner.faces.begin(), inner.faces.end(), isThere))
-        chosen.push_back(inner.edge);
-    return separating(chosen);
+    return separating(
+        [&](const InnerEdge& inner) { return std::any_of(inner.faces.begin(), inner.faces.end(), isThere); });
   }
 
   std::vector<int> betweenFaces() const {
-    std::vector<int> chosen;
-    for (const auto& inner : edges_)
-      if (inner.faces.size() == 2) chosen.push_back(inner.edge);
-    return separating(chosen);
+    return separating([](const InnerEdge&) { return true; });
   }
 
   /// Of a region of one face.
@@ -98,8 +89,13 @@ class InnerEdges {
   }
 
  private:
-  /// Those of the chosen edges that have different parts on both hands if all are cut.
-  std::vector<int> separating(const std::vector<int>& chosen) const {
+  /// Those of the edges between two faces for which `wanted` holds that have different parts on both hands if
+  /// all of these are cut.
+  template <class Wanted>
+  std::vector<int> separating(const Wanted& wanted) const {
+    std::vector<int> chosen;
+    for (const auto& inner : edges_)
+      if (inner.faces.size() == 2 && wanted(inner)) chosen.push_back(inner.edge);
     std::vector<char> cut = origin_.features.cut;
     for (size_t e = 0; e < cut.size(); ++e)
       if (origin_.features.inner[e]) cut[e] = 0;

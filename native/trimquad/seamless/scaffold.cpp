@@ -241,10 +241,10 @@ class ScaffoldedMap {
     if (!isScaffold(h) || !isScaffold(opposite) || !mesh_.is_flip_ok(e)) return false;
     const Eigen::Vector2d &a = position_[mesh_.from_vertex_handle(h).idx()],
                           &b = position_[mesh_.to_vertex_handle(h).idx()], &c = apex(h), &d = apex(opposite);
-    constexpr double kClearly = 1e-6;
+    constexpr double kClearly = 1e-6, kFlat = 1e-9;
     if (!(cotangent(c, a, b) + cotangent(d, b, a) < -kClearly)) return false;
-    const double size = kClearly * (d - c).squaredNorm();
-    return doubleArea(a, d, c) > size * 1e-3 && doubleArea(b, c, d) > size * 1e-3;
+    const double least = kFlat * (d - c).squaredNorm();
+    return doubleArea(a, d, c) > least && doubleArea(b, c, d) > least;
   }
 
   /// So that the map as a whole need not turn to follow the target: the scaffold would turn slowly.

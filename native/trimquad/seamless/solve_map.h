@@ -74,9 +74,9 @@ Eigen::VectorXd solveMap(const MapProblem& problem, const std::optional<Eigen::V
 
 /// The map of a plane region without seams, z, kept one to one by a scaffold: triangles that fill the holes
 /// and surround the outer loop must not collapse either while the map grows from a convex embedding. Other
-/// maps are one to one only locally. (After Jiang, Schaefer and Panozzo 2017) The outer loop stays about a
-/// quad away from itself. \param follow weight of the distance to the target beside symmetric Dirichlet
-/// energy
+/// maps are one to one only locally. The outer loop stays about a quad away from itself.
+/// (After Jiang, Schaefer and Panozzo 2017)
+/// \param follow weight of the distance to the target beside symmetric Dirichlet energy
 Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, const MapTarget& target,
                             const SeamBasis& basis, double follow, MapCounters& counters,
                             const Progress& progress);

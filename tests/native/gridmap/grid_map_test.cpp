@@ -114,12 +114,16 @@ bool boundaryTouchesItself(const SeamlessMap& map) {
   return firstContact(segments, std::nullopt).has_value();
 }
 
-TEST(GridMap, spiralRampIsUnrolledWithoutCoveringThePlaneTwice) {
-  // Developed, the ramp turns by 1.5 full turns and lies over itself.
-  const Region r = sample::region(sample::sheet(90, 8, [](double s, double t) {
-    const double a = 3 * M_PI * s, radius = 2 - t;
+/// A ramp that rises a little while it turns; developed, it lies over itself from a full turn on.
+Region ramp(double turns, int along, int across) {
+  return sample::region(sample::sheet(along, across, [&](double s, double t) {
+    const double a = 2 * turns * M_PI * s, radius = 2 - t;
     return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), 0.1 * a);
   }));
+}
+
+TEST(GridMap, spiralRampIsUnrolledWithoutCoveringThePlaneTwice) {
+  const Region r = ramp(1.5, 90, 8);
   const SeamlessMap map = seamlessMap(r, fieldOf(r), 0.1, Effort::Full, Progress());
   EXPECT_TRUE(map.counters.scaffolded);
   verify(map, false);
@@ -142,12 +146,8 @@ double narrowestGap(const SeamlessMap& map) {
 }
 
 TEST(GridMap, rampThatJustOverlapsIsBentApartALittle) {
-  // Developed, the ramp turns by a full turn and a twentieth. Its ends are to stay so far apart that a
-  // surface can get from one to the other.
-  const Region r = sample::region(sample::sheet(120, 16, [](double s, double t) {
-    const double a = 2.1 * M_PI * s, radius = 2 - t;
-    return Eigen::Vector3d(radius * std::cos(a), radius * std::sin(a), 0.1 * a);
-  }));
+  // Its ends are to stay so far apart that a surface can get from one to the other.
+  const Region r = ramp(1.05, 120, 16);
   const SeamlessMap map = seamlessMap(r, fieldOf(r), 0.1, Effort::Full, Progress());
   EXPECT_TRUE(map.counters.scaffolded);
   EXPECT_FALSE(boundaryTouchesItself(map));
