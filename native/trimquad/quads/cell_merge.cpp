@@ -85,11 +85,15 @@ std::optional<Side> CellMerge::mergeableSide(CellId cell) const {
   return best;
 }
 
-bool CellMerge::isMergeable(CellId cell, const Side& side) const {
+bool CellMerge::isMovable(CellId cell, const Side& side) const {
   const auto other = across(side);
-  if (!other || *other == cell || isFeature(side)) return false;
-  if (doubled_.count(side) || doubled_.count(reversed(side))) return false;
-  const auto points = pointsOf(cell), others = pointsOf(*other);
+  return other && *other != cell && !isFeature(side) && !doubled_.count(side) &&
+         !doubled_.count(reversed(side));
+}
+
+bool CellMerge::isMergeable(CellId cell, const Side& side) const {
+  if (!isMovable(cell, side)) return false;
+  const auto points = pointsOf(cell), others = pointsOf(across(side).value());
   return std::count_if(points.begin(), points.end(), [&](QuadPointId p) { return others.count(p) > 0; }) == 2;
 }
 

@@ -22,6 +22,9 @@ class CellMerge {
   std::optional<CellId> across(const Side& side) const;
   bool isGone(CellId cell) const { return mergedInto_[cell.index].has_value(); }
 
+  /// Whether one other cell lies beyond a side of a cell, and the side is no feature edge.
+  bool isMovable(CellId cell, const Side& side) const;
+
   /// Whether a cell with one simple loop can be merged across a side of it: the cells on both sides have only
   /// the side's ends in common, and it is no feature edge.
   bool isMergeable(CellId cell, const Side& side) const;

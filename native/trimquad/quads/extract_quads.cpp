@@ -6,8 +6,8 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/quads/cell_loops.h"
+#include "trimquad/quads/disk_cells.h"
 #include "trimquad/quads/grid_overlay.h"
-#include "trimquad/quads/simple_polygons.h"
 
 namespace trimquad {
 namespace {
@@ -25,6 +25,7 @@ class Extraction {
     for (int c = 0; c < loops_.cellCount(); ++c) addCell(c);
     gatherPoints();
     checkInvariants();
+    makeDisks(quads_, std::move(planar_));
   }
 
   QuadMesh take() { return std::move(quads_); }
@@ -89,7 +90,7 @@ class Extraction {
                           "triangle " + std::to_string(piece.triangle.idx()), position(polygon[0].index));
       addSides(c, loop);
     }
-    if (pinched || apart) cutIntoSimple(c);
+    if (pinched || apart) draw(c);
   }
 
   /// Whether the polygon runs along one side twice.
@@ -129,16 +130,12 @@ class Extraction {
     }
   }
 
-  void cutIntoSimple(int c) {
-    std::vector<std::vector<PlanarCorner>> planar;
+  void draw(int c) {
+    auto& planar = planar_.emplace_back(PlanarCell{{c}, {}});
     for (const auto& loop : loops_.loops(c)) {
-      auto& corners = planar.emplace_back();
+      auto& corners = planar.loops.emplace_back();
       for (const auto& p : loop)
         if (p.kept) corners.push_back({loops_.pointOf(p), p.at, !overlay_.points[loops_.pointOf(p)].border});
-    }
-    for (const auto& polygon : simplePolygons(planar)) {
-      auto& simple = quads_.cells[c].simple.emplace_back();
-      for (const int point : polygon) simple.push_back({point});
     }
   }
 
@@ -159,10 +156,11 @@ class Extraction {
       quads_.points.push_back({point.position, kind, point.border, point.border ? 0 : point.degree});
     }
     const auto rename = [&](QuadPointId& id) { id.index = number[id.index]; };
-    for (auto& cell : quads_.cells) {
+    for (auto& cell : quads_.cells)
       for (auto& loop : cell.loops) std::for_each(loop.begin(), loop.end(), rename);
-      for (auto& polygon : cell.simple) std::for_each(polygon.begin(), polygon.end(), rename);
-    }
+    for (auto& cell : planar_)
+      for (auto& loop : cell.loops)
+        for (auto& corner : loop) corner.point = number[corner.point];
     for (auto& piece : quads_.boundary) rename(piece.from), rename(piece.to);
     for (auto& side : quads_.featureEdges) rename(side[0]), rename(side[1]);
     std::sort(quads_.featureEdges.begin(), quads_.featureEdges.end());
@@ -193,7 +191,8 @@ class Extraction {
   std::vector<bool> corner_;  // by overlay point
   const std::vector<bool> node_;
   CellLoops loops_;
-  std::vector<bool> aligned_;  // by mesh edge
+  std::vector<bool> aligned_;       // by mesh edge
+  std::vector<PlanarCell> planar_;  // cells with holes or pinched ones
   int borderSides_ = 0, innerSides_ = 0;
   QuadMesh quads_;
 };

@@ -9,76 +9,52 @@
 namespace trimquad {
 namespace {
 
-using Chain = std::vector<PlanarCorner>;  // closed
-
 class Divider {
  public:
-  explicit Divider(const std::vector<Chain>& loops) : loops_(loops) {}
+  explicit Divider(const std::vector<PlanarLoop>& loops) : loops_(loops) {}
 
-  std::vector<Chain> run() {
-    Chain joined = loops_[0];
+  SimplePolygons run() {
+    PlanarLoop joined = loops_[0];
     std::vector<bool> waiting(loops_.size(), true);
     waiting[0] = false;
     for (size_t k = 1; k < loops_.size(); ++k) joined = joinNearest(joined, waiting);
-    std::vector<Chain> open{joined}, simple;
+    std::vector<PlanarLoop> open{joined};
+    SimplePolygons simple;
     while (!open.empty()) {
-      const Chain chain = open.back();
+      const PlanarLoop chain = open.back();
       open.pop_back();
       if (repeatedPositions(chain).empty()) {
-        simple.push_back(chain);
+        auto& polygon = simple.polygons.emplace_back();
+        for (const auto& corner : chain) polygon.push_back(corner.point);
         continue;
       }
       const auto [i, j] = bestDiagonal(chain);
       open.emplace_back(chain.begin() + long(i), chain.begin() + long(j) + 1);
-      Chain rest(chain.begin() + long(j), chain.end());
+      PlanarLoop rest(chain.begin() + long(j), chain.end());
       rest.insert(rest.end(), chain.begin(), chain.begin() + long(i) + 1);
       open.push_back(rest);
     }
+    for (const auto& [p, q] : bridges_) simple.innerEnds += p.inner + q.inner;
     return simple;
   }
 
  private:
   /// How often the segment p -> q meets loop edges and bridges, other than in its own ends.
   int crossings(const PlanarCorner& p, const PlanarCorner& q) const {
-    int count = 0;
-    for (const auto& loop : loops_)
-      for (size_t k = 0; k < loop.size(); ++k) count += meets(p, q, loop[k], loop[(k + 1) % loop.size()]);
-    for (const auto& [r, s] : bridges_) count += meets(p, q, r, s);
+    int count = trimquad::crossings(loops_, p, q);
+    for (const auto& [r, s] : bridges_) count += meet(p, q, r, s);
     return count;
   }
 
-  static bool meets(const PlanarCorner& p, const PlanarCorner& q, const PlanarCorner& r,
-                    const PlanarCorner& s) {
-    const auto inside = [](const PlanarCorner& a, const PlanarCorner& b, const PlanarCorner& x) {
-      return x.point != a.point && x.point != b.point && orientation(a.at, b.at, x.at) == 0 &&
-             dot(a.at - x.at, b.at - x.at) <= 0;
-    };
-    if (inside(p, q, r) || inside(p, q, s) || inside(r, s, p) || inside(r, s, q)) return true;
-    return orientation(p.at, q.at, r.at) * orientation(p.at, q.at, s.at) < 0 &&
-           orientation(r.at, s.at, p.at) * orientation(r.at, s.at, q.at) < 0;
-  }
-
-  /// Whether the direction from corner i of the chain to `x` leads into the chain's inside.
-  bool leadsInside(const Chain& chain, size_t i, FixedVector x) const {
-    const FixedVector here = chain[i].at;
-    const FixedVector out = chain[(i + 1) % chain.size()].at - here;
-    const FixedVector in = chain[(i + chain.size() - 1) % chain.size()].at - here;
-    return strictlyInsideSector(out, in, x - here);
-  }
-
-  static WideQuanta squaredDistance(const PlanarCorner& p, const PlanarCorner& q) {
-    return dot(q.at - p.at, q.at - p.at);
-  }
-
   /// Joins the chain with the nearest loop that is still apart, by a bridge there and back.
-  Chain joinNearest(const Chain& chain, std::vector<bool>& waiting) {
+  PlanarLoop joinNearest(const PlanarLoop& chain, std::vector<bool>& waiting) {
     using Score = std::tuple<int, int, WideQuanta>;  // crossings, inner ends, length
     std::optional<Score> best;
     size_t bestCorner = 0, bestLoop = 0, bestEnd = 0;
     for (size_t i = 0; i < chain.size(); ++i)
       for (size_t loop = 1; loop < loops_.size(); ++loop) {
         if (!waiting[loop]) continue;
-        const Chain& hole = loops_[loop];
+        const PlanarLoop& hole = loops_[loop];
         for (size_t k = 0; k < hole.size(); ++k) {
           const WideQuanta length = squaredDistance(chain[i], hole[k]);
           const int inner = chain[i].inner + hole[k].inner;
@@ -91,9 +67,9 @@ class Divider {
       }
     TRIMQUAD_ASSERT(best);
     waiting[bestLoop] = false;
-    const Chain& hole = loops_[bestLoop];
+    const PlanarLoop& hole = loops_[bestLoop];
     bridges_.push_back({chain[bestCorner], hole[bestEnd]});
-    Chain joined(chain.begin(), chain.begin() + long(bestCorner) + 1);
+    PlanarLoop joined(chain.begin(), chain.begin() + long(bestCorner) + 1);
     for (size_t k = 0; k <= hole.size(); ++k) joined.push_back(hole[(bestEnd + k) % hole.size()]);
     joined.insert(joined.end(), chain.begin() + long(bestCorner), chain.end());
     return joined;
@@ -101,7 +77,7 @@ class Divider {
 
   /// The diagonal that leaves the fewest repeated corners, has the fewest inner ends and divides most evenly,
   /// among those that cross nothing.
-  std::pair<size_t, size_t> bestDiagonal(const Chain& chain) {
+  std::pair<size_t, size_t> bestDiagonal(const PlanarLoop& chain) {
     using Candidate = std::tuple<int, int, size_t, WideQuanta, size_t,
                                  size_t>;  // repeats left, inner ends, larger part, length, ends
     const size_t n = chain.size();
@@ -134,7 +110,7 @@ class Divider {
   }
 
   /// Pairs of positions in the chain that hold the same corner.
-  static std::vector<std::pair<size_t, size_t>> repeatedPositions(const Chain& chain) {
+  static std::vector<std::pair<size_t, size_t>> repeatedPositions(const PlanarLoop& chain) {
     std::vector<std::pair<int, size_t>> sorted;
     for (size_t i = 0; i < chain.size(); ++i) sorted.push_back({chain[i].point, i});
     std::sort(sorted.begin(), sorted.end());
@@ -144,19 +120,14 @@ class Divider {
     return pairs;
   }
 
-  const std::vector<Chain>& loops_;
+  const std::vector<PlanarLoop>& loops_;
   std::vector<std::pair<PlanarCorner, PlanarCorner>> bridges_;
 };
 
 }  // namespace
 
-std::vector<std::vector<int>> simplePolygons(const std::vector<std::vector<PlanarCorner>>& loops) {
-  std::vector<std::vector<int>> polygons;
-  for (const auto& chain : Divider(loops).run()) {
-    auto& polygon = polygons.emplace_back();
-    for (const auto& corner : chain) polygon.push_back(corner.point);
-  }
-  return polygons;
+SimplePolygons simplePolygons(const std::vector<PlanarLoop>& loops) {
+  return Divider(loops).run();
 }
 
 }  // namespace trimquad

@@ -2,20 +2,20 @@
 
 #include <vector>
 
-#include "trimquad/base/fixed.h"
+#include "trimquad/quads/planar_loop.h"
 
 namespace trimquad {
 
-struct PlanarCorner {
-  int point;           ///< corners are the same when their points are
-  FixedVector at;      ///< position in the plane
-  bool inner = false;  ///< other polygons meet all around it: diagonals rather end elsewhere
+struct SimplePolygons {
+  std::vector<std::vector<int>> polygons;  ///< of points
+  int innerEnds = 0;                       ///< how many ends of the diagonals are inner corners
 };
 
-/// Cuts a polygon with holes into simple polygons by diagonals between its corners.
+/// Cuts a polygon with holes into simple polygons by diagonals between its corners, which rather end at
+/// corners that are not inner ones.
 /// \param loops  the outer loop counter-clockwise, the holes clockwise; a loop may pass through a point
-/// several times \returns polygons of points; every loop edge occurs in one of them, every diagonal in two.
+/// several times \returns polygons such that every loop edge occurs in one of them, every diagonal in two.
 /// No polygon has a point twice, and diagonals cross nothing as long as the loops do not.
-std::vector<std::vector<int>> simplePolygons(const std::vector<std::vector<PlanarCorner>>& loops);
+SimplePolygons simplePolygons(const std::vector<PlanarLoop>& loops);
 
 }  // namespace trimquad

@@ -60,24 +60,19 @@ inline void expectManifold(const QuadMesh& quads, const GridMap& map) {
   for (const bool isUsed : used) EXPECT_TRUE(isUsed);
 }
 
-/// What every extracted mesh must be.
+/// What every extracted mesh must be: a manifold whose inner points have as many polygons as quads around.
 inline void expectSound(const QuadMesh& quads, const GridMap& map) {
   expectManifold(quads, map);
   std::vector<int> valence(quads.points.size(), 0);
+  for (const auto& polygon : polygonsOf(quads))
+    for (const auto id : polygon) ++valence[id.index];
   for (const auto& cell : quads.cells) {
     if (!cell.full) continue;
     EXPECT_EQ(cell.area, 1);
     ASSERT_EQ(cell.loops.size(), 1u);
     ASSERT_EQ(cell.loops[0].size(), 4u);
-    for (const auto id : cell.loops[0]) {
-      EXPECT_EQ(quads.points[id.index].kind, QuadMesh::PointKind::Grid);
-      ++valence[id.index];
-    }
+    for (const auto id : cell.loops[0]) EXPECT_EQ(quads.points[id.index].kind, QuadMesh::PointKind::Grid);
   }
-  for (const auto& cell : quads.cells)
-    if (!cell.full)
-      for (const auto& loop : cell.loops)
-        for (const auto id : loop) ++valence[id.index];
   for (size_t p = 0; p < quads.points.size(); ++p) {
     if (!quads.points[p].border) {
       EXPECT_EQ(valence[p], quads.points[p].quads);

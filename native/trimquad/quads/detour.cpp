@@ -1,0 +1,91 @@
+#include "trimquad/quads/detour.h"
+
+#include <algorithm>
+
+namespace trimquad {
+namespace {
+
+class Detours {
+ public:
+  Detours(const std::vector<PlanarLoop>& loops, const std::vector<bool>& movable)
+      : loops_(loops), movable_(movable) {}
+
+  std::optional<Detour> shortest() const {
+    std::optional<Detour> best;
+    for (size_t hole = 1; hole < loops_.size(); ++hole)
+      for (size_t side = 0; side < loops_[0].size(); ++side) {
+        if (!movable_[side]) continue;
+        const auto detour = through(side, hole);
+        if (detour && (!best || detour->length < best->length)) best = detour;
+      }
+    return best;
+  }
+
+ private:
+  const PlanarCorner& corner(size_t k) const { return loops_[0][k % loops_[0].size()]; }
+
+  /// The corners of a hole that a corner of the outer loop sees, the two nearest ones.
+  std::vector<size_t> nearest(size_t from, const PlanarLoop& hole) const {
+    from %= loops_[0].size();
+    const PlanarCorner& start = corner(from);
+    std::vector<std::pair<WideQuanta, size_t>> sorted;
+    for (size_t k = 0; k < hole.size(); ++k) sorted.push_back({squaredDistance(start, hole[k]), k});
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<size_t> seen;
+    for (const auto& [distance, k] : sorted) {
+      if (!leadsInside(loops_[0], from, hole[k].at) || !leadsInside(hole, k, start.at) ||
+          crossings(loops_, start, hole[k]) > 0)
+        continue;
+      seen.push_back(k);
+      if (seen.size() == 2) break;
+    }
+    return seen;
+  }
+
+  std::optional<Detour> through(size_t side, size_t h) const {
+    const PlanarLoop& hole = loops_[h];
+    const PlanarCorner &start = corner(side), &end = corner(side + 1);
+    // A hole that touches the outer loop is met there already.
+    const size_t atStart = positionIn(hole, start.point), atEnd = positionIn(hole, end.point);
+    if (atStart == hole.size() && atEnd == hole.size() && touchesOuter(hole)) return {};
+    const auto entries = atStart < hole.size() ? std::vector{atStart} : nearest(side, hole);
+    const auto exits = atEnd < hole.size() ? std::vector{atEnd} : nearest(side + 1, hole);
+    std::optional<Detour> best;
+    for (const size_t entry : entries)
+      for (const size_t exit : exits) {
+        if (entry == exit || meet(start, hole[entry], end, hole[exit])) continue;
+        const Detour detour{side, h, entry, exit,
+                            squaredDistance(start, hole[entry]) + squaredDistance(end, hole[exit])};
+        if ((!best || detour.length < best->length) && isFree(detour)) best = detour;
+      }
+    return best;
+  }
+
+  bool touchesOuter(const PlanarLoop& hole) const {
+    return std::any_of(hole.begin(), hole.end(), [&](const PlanarCorner& c) {
+      return positionIn(loops_[0], c.point) < loops_[0].size();
+    });
+  }
+
+  /// Whether what comes to the other cell is a polygon without other holes.
+  bool isFree(const Detour& detour) const {
+    PlanarLoop between = stretch(loops_[detour.hole], detour.exit, detour.entry);
+    between.push_back(corner(detour.side));
+    between.push_back(corner(detour.side + 1));
+    if (doubleArea(between) <= 0) return false;
+    for (size_t l = 1; l < loops_.size(); ++l)
+      if (l != detour.hole && isInside(between, loops_[l][0].at)) return false;
+    return true;
+  }
+
+  const std::vector<PlanarLoop>& loops_;
+  const std::vector<bool>& movable_;
+};
+
+}  // namespace
+
+std::optional<Detour> shortestDetour(const std::vector<PlanarLoop>& loops, const std::vector<bool>& movable) {
+  return Detours(loops, movable).shortest();
+}
+
+}  // namespace trimquad

@@ -1,0 +1,144 @@
+#include "trimquad/quads/disk_cells.h"
+
+#include <algorithm>
+#include <complex>
+#include <set>
+
+#include "trimquad/base/error.h"
+#include "trimquad/quads/cell_merge.h"
+#include "trimquad/quads/detour.h"
+#include "trimquad/quads/simple_polygons.h"
+
+namespace trimquad {
+namespace {
+
+using Side = CellMerge::Side;
+
+/// `corner`, drawn beside from -> to, in another drawing of the two. Exact where both are charts.
+FixedVector redrawn(FixedVector corner, const std::array<FixedVector, 2>& here,
+                    const std::array<FixedVector, 2>& there) {
+  const auto complex = [](FixedVector x) { return std::complex<double>(double(x.u), double(x.v)); };
+  const auto turn = complex(there[1] - there[0]) / complex(here[1] - here[0]);
+  const auto x = turn * complex(corner - here[0]);
+  return there[0] + FixedVector{std::llround(x.real()), std::llround(x.imag())};
+}
+
+class DiskMaker {
+ public:
+  DiskMaker(QuadMesh& quads, std::vector<PlanarCell> cells) : quads_(quads), cells_(std::move(cells)) {}
+
+  void run() {
+    for (auto& cell : cells_)
+      while (!isDisk(cell) && simplePolygons(cell.loops).innerEnds > 0)
+        if (!leadSideThroughHole(cell)) break;
+    for (const auto& cell : cells_) {
+      if (isDisk(cell)) continue;
+      for (const auto& polygon : simplePolygons(cell.loops).polygons) {
+        auto& simple = quads_.cells[cell.cell.index].simple.emplace_back();
+        for (const int point : polygon) simple.push_back({point});
+      }
+    }
+  }
+
+ private:
+  static bool isDisk(const PlanarCell& cell) {
+    if (cell.loops.size() > 1) return false;
+    std::vector<int> points;
+    for (const auto& corner : cell.loops[0]) points.push_back(corner.point);
+    std::sort(points.begin(), points.end());
+    return std::adjacent_find(points.begin(), points.end()) == points.end();
+  }
+
+  bool leadSideThroughHole(PlanarCell& cell) {
+    if (!sides_) sides_.emplace(quads_);
+    std::vector<PlanarLoop> loops = dividedWherePinched(cell.loops);
+    std::vector<bool> movable;
+    for (size_t k = 0; k < loops[0].size(); ++k)
+      movable.push_back(sides_->isMovable(cell.cell, sideOf(loops[0], k)));
+    const auto detour = shortestDetour(loops, movable);
+    if (!detour) return false;
+
+    const Side side = sideOf(loops[0], detour->side);
+    const std::array ends{loops[0][detour->side], loops[0][(detour->side + 1) % loops[0].size()]};
+    const PlanarLoop& hole = loops[detour->hole];
+    const PlanarLoop farBank = stretch(hole, detour->entry, detour->exit),
+                     nearBank = stretch(hole, detour->exit, detour->entry);
+    const CellId other = sides_->across(side).value();
+    moveArea(cell.cell, other, loops, ends, nearBank);
+    moveBoundary(cell.cell, other, nearBank);
+    addBank(other, ends, nearBank);
+    loops[0] = withWay(loops[0], ends[0], ends[1], farBank);
+    loops.erase(loops.begin() + long(detour->hole));
+    cell.loops = joinedWherePinched(std::move(loops));
+    setLoops(cell);
+    return true;
+  }
+
+  static Side sideOf(const PlanarLoop& loop, size_t k) {
+    return {QuadPointId{loop[k].point}, QuadPointId{loop[(k + 1) % loop.size()].point}};
+  }
+
+  void moveArea(CellId from, CellId to, const std::vector<PlanarLoop>& loops,
+                const std::array<PlanarCorner, 2>& ends, PlanarLoop between) {
+    WideQuanta whole = 0;
+    for (const auto& loop : loops) whole += doubleArea(loop);
+    between.insert(between.end(), ends.begin(), ends.end());
+    auto& area = quads_.cells[from.index].area;
+    const double moved = area * double(doubleArea(between)) / double(whole);
+    area -= moved;
+    quads_.cells[to.index].area += moved;
+  }
+
+  void moveBoundary(CellId from, CellId to, const PlanarLoop& bank) {
+    std::set<Side> moved;
+    for (size_t k = 0; k + 1 < bank.size(); ++k) moved.insert(sideOf(bank, k));
+    for (auto& piece : quads_.boundary)
+      if (piece.cell == from && moved.count({piece.from, piece.to})) piece.cell = to;
+  }
+
+  /// To the cell on the other side, in its own drawing if there is one.
+  void addBank(CellId id, const std::array<PlanarCorner, 2>& ends, PlanarLoop bank) {
+    const auto known =
+        std::find_if(cells_.begin(), cells_.end(), [&](const auto& c) { return c.cell == id; });
+    PlanarCell undrawn{id, {}};
+    for (const auto& polygon : quads_.cells[id.index].loops) {
+      auto& loop = undrawn.loops.emplace_back();
+      for (const auto point : polygon) loop.push_back({point.index, {}});
+    }
+    PlanarCell& cell = known == cells_.end() ? undrawn : *known;
+    for (auto& loop : cell.loops)
+      for (size_t k = 0; k < loop.size(); ++k) {
+        const PlanarCorner &end = loop[k], &start = loop[(k + 1) % loop.size()];
+        if (end.point != ends[1].point || start.point != ends[0].point) continue;
+        if (known != cells_.end())
+          for (auto& corner : bank)
+            corner.at = redrawn(corner.at, {ends[0].at, ends[1].at}, {start.at, end.at});
+        loop = withWay(loop, end, start, bank);
+        setLoops(cell);
+        return;
+      }
+    TRIMQUAD_ASSERT(false);
+  }
+
+  void setLoops(const PlanarCell& drawn) {
+    auto& cell = quads_.cells[drawn.cell.index];
+    cell.full = false;
+    cell.loops.clear();
+    for (const auto& loop : drawn.loops) {
+      auto& polygon = cell.loops.emplace_back();
+      for (const auto& corner : loop) polygon.push_back({corner.point});
+    }
+  }
+
+  QuadMesh& quads_;
+  std::optional<CellMerge> sides_;  // as they were at first; a side that was led elsewhere occurs no more
+  std::vector<PlanarCell> cells_;
+};
+
+}  // namespace
+
+void makeDisks(QuadMesh& quads, std::vector<PlanarCell> cells) {
+  DiskMaker(quads, std::move(cells)).run();
+}
+
+}  // namespace trimquad
