@@ -68,7 +68,7 @@ void bindQuads(py::module_& m) {
       },
       py::arg("grid"), py::arg("region"), py::arg("progress"), Released(),
       "The quads of a grid map; the region says which boundary vertices are corners. Cells under a millionth "
-      "of a whole one go into neighbours.");
+      "of a whole one, and such as are lines in space, go into neighbours.");
   m.def("merge_slivers", &mergeSlivers, py::arg("quads"), py::arg("fraction"), Released(),
         "Merges trimmed cells under this fraction of a whole cell with neighbours; returns how many.");
 }

@@ -12,9 +12,29 @@ using Side = CellMerge::Side;
 
 /// Area of a cell that vanishes, as a fraction of a whole one.
 constexpr double kVanishing = 1e-6;
+/// Distance of a cell's corners from a line, as a fraction of its length, up to which they lie on it.
+constexpr double kStraight = 1e-9;
 
 bool isSliver(const QuadMesh::Cell& cell, double fraction) {
   return !cell.full && cell.area < fraction && cell.loops.size() == 1 && cell.simple.empty();
+}
+
+/// Whether a cell's corners lie on one line in space, on the boundary: this is straight there though the map
+/// bends it.
+bool isStraight(const CellMerge& cells, CellId id) {
+  const auto& cell = cells[id];
+  if (cell.full || cell.loops.size() > 1 || !cell.simple.empty()) return false;
+  const auto& loop = cell.loops[0];
+  const Eigen::Vector3d origin = cells[loop[0]].position;
+  Eigen::Vector3d line = Eigen::Vector3d::Zero();
+  for (const auto point : loop) {
+    const Eigen::Vector3d x = cells[point].position - origin;
+    if (!cells[point].border) return false;
+    if (x.squaredNorm() > line.squaredNorm()) line = x;
+  }
+  return std::all_of(loop.begin(), loop.end(), [&](QuadPointId point) {
+    return (cells[point].position - origin).cross(line).norm() <= kStraight * line.squaredNorm();
+  });
 }
 
 double length(const CellMerge& cells, const Side& side) {
@@ -101,7 +121,7 @@ int dropVanishingCells(QuadMesh& quads) {
   int dropped = 0;
   for (int c = 0; c < int(quads.cells.size()); ++c) {
     const CellId cell{c};
-    if (cells.isGone(cell) || !isSliver(cells[cell], kVanishing)) continue;
+    if (cells.isGone(cell) || !(isSliver(cells[cell], kVanishing) || isStraight(cells, cell))) continue;
     const auto side = cells.mergeableSide(cell);
     const auto drop = side ? Drop::across(cells, cell, *side) : std::nullopt;
     if (!drop) continue;

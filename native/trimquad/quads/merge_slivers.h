@@ -11,13 +11,14 @@ namespace trimquad {
 /// how many cells are gone; `quads.mergedSlivers` counts them too
 int mergeSlivers(QuadMesh& quads, double fraction);
 
-/// Takes out trimmed cells of less than a millionth of a whole one, where the boundary passes a grid point or
-/// line so closely that no reader of the polygons could tell it from a touch: they go into the neighbour, and
-/// grid points beside them onto the boundary, less than 0.002 quads away. The valences of the other inner
-/// points and the Euler characteristic stay, and so do whole quads, unless the boundary has a corner on their
-/// side. Those for which that cannot be (around
-/// irregular vertices, on feature edges, where the surface is less than a cell wide) stay.
-/// \return how many are gone; `quads.droppedSlivers` counts them too
+/// Takes out trimmed cells that as polygons would be nothing: of less than a millionth of a whole one, where
+/// the boundary passes a grid point or line so closely that no reader could tell it from a touch; and those
+/// whose corners all lie on one line in space, where the boundary is straight though the map bends it. They
+/// go into the neighbour, and grid points beside them onto the boundary, less than 0.002 quads away. The
+/// valences of the other inner points and the Euler characteristic stay, and so do whole quads, unless the
+/// boundary has a corner on their side. Those for which that cannot be (around irregular vertices, on feature
+/// edges, where the surface is less than a cell wide) stay. \return how many are gone; `quads.droppedSlivers`
+/// counts them too
 int dropVanishingCells(QuadMesh& quads);
 
 }  // namespace trimquad

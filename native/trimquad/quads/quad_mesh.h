@@ -58,7 +58,7 @@ struct QuadMesh {
   std::vector<std::array<QuadPointId, 2>> featureEdges;  ///< sides of cells along aligned edges
   int eulerCharacteristic = 0;
   int mergedSlivers = 0;   ///< trimmed cells that went into neighbours (mergeSlivers)
-  int droppedSlivers = 0;  ///< and those too small to be told apart (dropVanishingCells)
+  int droppedSlivers = 0;  ///< and those that would be no polygons (dropVanishingCells)
 };
 
 /// Two points that more than one side joins, if there are any: the surface is less than three quads around

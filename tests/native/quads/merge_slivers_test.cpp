@@ -117,6 +117,26 @@ TEST(VanishingCells, aGridPointBesideTheBoundaryGoesOntoIt) {
   EXPECT_EQ(int(quads.cells.size()), cells - 12);
 }
 
+TEST(VanishingCells, aCellBetweenAStraightBoundaryAndABentGridLineIsNoPolygon) {
+  // The boundary's middle vertex lies beyond the grid line v = 1 in the map, on a line in space.
+  MappedSoup mapped;
+  mapped.soup.points = {{-1, 0, 0}, {0, -1, 0}, {1, 0, 0}, {0, 0, 0}};
+  const Eigen::Vector2d left(0.1, 0.6), bottom(0.5, 0.2), right(0.9, 0.6), top(0.5, 1.2);
+  mapped.add({0, 1, 3}, {left, bottom, top});
+  mapped.add({1, 2, 3}, {bottom, right, top});
+  GridMap map = gridMapOf(mapped);
+  QuadMesh quads = extract(map);
+  ASSERT_EQ(quads.cells.size(), 2u);
+  EXPECT_EQ(dropVanishingCells(quads), 1);
+  expectSound(quads, map);
+  ASSERT_EQ(quads.cells.size(), 1u);
+  // Bent in space as well it stays.
+  map.mesh.set_point(VertexHandle(3), {0, 0.01, 0});
+  quads = extract(map);
+  EXPECT_EQ(dropVanishingCells(quads), 0);
+  EXPECT_EQ(quads.cells.size(), 2u);
+}
+
 TEST(VanishingCells, largerOnesStay) {
   QuadMesh quads = extract(turnedBy45(2 + 3e-3));
   EXPECT_EQ(dropVanishingCells(quads), 0);
