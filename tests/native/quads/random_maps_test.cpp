@@ -44,17 +44,22 @@ int interiorGridPoints(const GridMap& map) {
   return count;
 }
 
+double planarArea(const QuadMesh& quads, const QuadMesh::Polygon& polygon) {
+  double area = 0;
+  for (size_t k = 0; k < polygon.size(); ++k) {
+    const auto &p = quads.points[polygon[k].index].position,
+               &q = quads.points[polygon[(k + 1) % polygon.size()].index].position;
+    area += 0.5 * (p.x() * q.y() - p.y() * q.x());
+  }
+  return area;
+}
+
 /// Cells with holes lie flat here, so their simple polygons must tile them.
 void expectTiled(const QuadMesh& quads) {
   for (const auto& cell : quads.cells) {
     double area = 0;
     for (const auto& polygon : cell.simple) {
-      double part = 0;
-      for (size_t k = 0; k < polygon.size(); ++k) {
-        const auto &p = quads.points[polygon[k].index].position,
-                   &q = quads.points[polygon[(k + 1) % polygon.size()].index].position;
-        part += 0.5 * (p.x() * q.y() - p.y() * q.x());
-      }
+      const double part = planarArea(quads, polygon);
       EXPECT_GE(part, -1e-4);
       area += part;
     }
@@ -122,4 +127,51 @@ TEST(RandomMaps, aTurnedDiskIsSound) {
       EXPECT_NEAR(statistics(quads).angleDeviation.max, 0, 1e-4);
     }
   }
+}
+
+TEST(RandomMaps, aPerforatedPlateIsSound) {
+  int led = 0;
+  for (unsigned seed = 0; seed < 150 && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const int n = 12 + int(random() % 30);
+    const double step = (2 + 8 * unit(random)) / n;  // in quads
+    std::vector<bool> hole(size_t(n * n), false);
+    for (int tries = int(random() % 90); tries > 0; --tries) {
+      const int w = 1 + int(random() % 3), h = 1 + int(random() % 3),
+                i = 1 + int(random() % unsigned(n - w - 1)), j = 1 + int(random() % unsigned(n - h - 1));
+      bool free = true;  // and apart from the others
+      for (int x = i - 1; x <= i + w; ++x)
+        for (int y = j - 1; y <= j + h; ++y) free = free && !hole[size_t(y * n + x)];
+      for (int x = i; x < i + w; ++x)
+        for (int y = j; y < j + h; ++y)
+          if (free) hole[size_t(y * n + x)] = true;
+    }
+    const Eigen::Rotation2Dd turned(random() % 3 ? 2 * M_PI * unit(random) : 0);
+    const Eigen::Vector2d start =
+        random() % 3 ? Eigen::Vector2d(unit(random), unit(random)) : Eigen::Vector2d(0, 0);
+    GridMap map = planarMap(sheet(
+                                n, n,
+                                [&](int i, int j) -> Eigen::Vector2d {
+                                  return start + turned * Eigen::Vector2d(step * i, step * j);
+                                },
+                                [&](int i, int j) { return hole[size_t(j * n + i)]; }),
+                            30);
+    shuffleCharts(map, random);
+    std::vector<VertexHandle> corners;  // all, so that outlines are exact
+    for (const auto v : map.mesh.vertices())
+      if (!map.mesh.is_isolated(v) && map.mesh.is_boundary(v)) corners.push_back(v);
+    const QuadMesh quads = extractSound(map, corners);
+    expectTiled(quads);
+    double area = 0;
+    for (const auto& cell : quads.cells) {
+      const double polygon = cell.simple.empty() ? planarArea(quads, cell.loops[0]) : cell.area;
+      EXPECT_GT(polygon, 0);
+      area += polygon;
+      led += !cell.full && cell.area > 1;
+    }
+    EXPECT_NEAR(area, mapArea(map), 1e-4);
+  }
+  EXPECT_GT(led, 50) << "sides that go through holes";
 }
