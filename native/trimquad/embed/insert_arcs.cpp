@@ -7,6 +7,7 @@
 #include <span>
 
 #include "trimquad/base/error.h"
+#include "trimquad/embed/exact_arcs.h"
 #include "trimquad/mesh/replace_triangles.h"
 
 namespace trimquad {
@@ -18,31 +19,17 @@ using Origin = RefinedMesh::Origin;
 /// Rounded places keep this far from the ends of what they are inside of, relative to it.
 constexpr double kInside = 1e-9;
 
-/// A straight line in a triangle's chart: a side of the triangle, u = constant or v = constant, or a cut.
-struct Line {
-  enum class Kind { Side, U, V, Cut } kind;
-  Quanta number;
-  friend auto operator<=>(const Line&, const Line&) = default;
-};
-
-struct Segment {
-  FaceHandle triangle;
-  VertexHandle from, to;
-  int direction;  ///< quarter turns from +u
-  Line line;
-};
-
 /// A corner of a convex polygon, which may have straight angles, and the side from it to the next.
 struct CellCorner {
   VertexHandle vertex;
-  Line side;
+  ChartLine side;
 };
 
 /// What leaves a vertex inside a triangle and along its outline.
 struct Spoke {
   int at, to;  ///< in `vertices_`
   int rank;    ///< counter-clockwise around the vertex
-  Line line;
+  ChartLine line;
   std::size_t twin = 0;
   bool walked = false;  ///< by the cell on its left
 };
@@ -81,16 +68,18 @@ Origin originOf(const Parametrization& map, const SurfacePoint& x) {
 class Insertion {
  public:
   Insertion(const Parametrization& map, const TMesh& tmesh, RefinedMesh& surface)
-      : map_(map), input_(map.mesh), tmesh_(tmesh), surface_(surface), onEdge_(input_.n_edges(), kNone) {}
+      : map_(map), input_(map.mesh), tmesh_(tmesh), surface_(surface) {
+    onEdge_.assign(input_.n_edges(), kNone);
+  }
 
   ArcPaths run() && {
     for (const auto& node : tmesh_.nodes)
       result_.node.push_back(node.place ? std::optional(vertexAt(*node.place)) : std::nullopt);
     for (const auto& arc : tmesh_.arcs) result_.arc.push_back(pathOf(arc));
     result_.crossings = int(origins_.size());
-    snapLonely();
-    for (const auto& red : tmesh_.redSegments) result_.redSegment.push_back(pathOf(red));
     sortAlongEdges();
+    snapCrossings(input_, arcs_);
+    for (const auto& red : tmesh_.redSegments) result_.redSegment.push_back(pathOf(red));
     cutTriangles();
     startFrom(input_, surface_);
     addVertices();
@@ -155,9 +144,9 @@ class Insertion {
       if (path.empty()) path.push_back(vertexAt(leg.from));
       path.push_back(vertexAt(leg.to));
       if (leg.alongEdge) continue;
-      const Line line{leg.direction % 2 == 0 ? Line::Kind::V : Line::Kind::U, leg.constant};
+      const ChartLine line{leg.direction % 2 == 0 ? ChartLine::Kind::V : ChartLine::Kind::U, leg.constant};
       segments_.push_back(
-          {input_.face_handle(leg.side), path[path.size() - 2], path.back(), leg.direction, line});
+          {input_.face_handle(leg.side), {path[path.size() - 2], path.back()}, leg.direction, line});
     }
     return path;
   }
@@ -168,115 +157,6 @@ class Insertion {
       path.push_back(input_.to_vertex_handle(red.edges[k]));
     path.push_back(*result_.node[tmesh_.end(red.virtualArcs.back()).index]);
     return path;
-  }
-
-  // --- lonely crossings
-
-  /// What arcs do in a triangle.
-  struct Load {
-    int segments = 0, crossings = 0;  ///< crossings: on its sides
-    bool isLonely() const { return segments == 1 && crossings <= 2; }
-  };
-
-  /// Crossings of edges on both sides of which nothing else passes need not be put into the mesh at all:
-  /// their arcs may as well run through an end of the edge that no other arc uses, and so along edges. (What
-  /// `snap` would do with most of them)
-  void snapLonely() {
-    load_.resize(input_.n_faces());
-    for (const Segment& s : segments_) ++load_[s.triangle.idx()].segments;
-    for (const EdgeHandle e : crossed_)
-      for (int k = onEdge_[e.idx()]; k != kNone; k = crossings_[k].before)
-        for (const int side : {0, 1})
-          if (const auto f = input_.face_handle(input_.halfedge_handle(e, side)); f.is_valid())
-            ++load_[f.idx()].crossings;
-    taken_.assign(input_.n_vertices(), false);
-    for (const auto& node : result_.node)
-      if (node && isOfInput(*node)) taken_[node->idx()] = true;
-    for (const EdgePath& path : result_.arc)
-      for (const VertexHandle v : path)
-        if (isOfInput(v)) taken_[v.idx()] = true;
-    standIn_.assign(origins_.size(), VertexHandle());
-    for (EdgePath& path : result_.arc)
-      if (!path.empty()) snapLonely(path);
-    std::erase_if(segments_, [&](Segment& s) { return !followStandIns(s); });
-    dropSnapped();
-  }
-
-  bool isOfInput(VertexHandle v) const { return std::size_t(v.idx()) < input_.n_vertices(); }
-  std::size_t added(VertexHandle v) const { return std::size_t(v.idx()) - input_.n_vertices(); }
-
-  /// Inside an arc, whose vertices in edges are no nodes.
-  void snapLonely(EdgePath& path) {
-    VertexHandle last;
-    std::size_t length = 1;
-    for (std::size_t k = 1; k < path.size(); ++k) {
-      VertexHandle v = path[k];
-      const bool isInside = k + 1 < path.size() && !isOfInput(v);
-      last = isInside ? freeEnd(origins_[added(v)], last) : VertexHandle();
-      if (last.is_valid()) {
-        standIn_[added(v)] = last;
-        taken_[last.idx()] = true;
-        v = last;
-      }
-      if (v != path[length - 1]) path[length++] = v;
-    }
-    path.resize(length);
-  }
-
-  /// The nearest end of the edge of a lonely crossing that is free, or taken by `last`, through which the
-  /// same arc comes.
-  VertexHandle freeEnd(const Origin& crossing, VertexHandle last) const {
-    const auto* e = std::get_if<EdgeHandle>(&crossing.element);
-    if (!e || input_.is_boundary(*e)) return VertexHandle();
-    for (const int side : {0, 1})
-      if (!load_[input_.face_handle(input_.halfedge_handle(*e, side)).idx()].isLonely())
-        return VertexHandle();
-    const HalfedgeHandle h = input_.halfedge_handle(*e, crossing.weights[1] > 0.5 ? 0 : 1);
-    for (const VertexHandle v : {input_.to_vertex_handle(h), input_.from_vertex_handle(h)})
-      if (v == last || (!taken_[v.idx()] && !input_.is_boundary(v))) return v;
-    return VertexHandle();
-  }
-
-  /// Moves the ends of a segment; whether it still goes through its triangle.
-  bool followStandIns(Segment& s) const {
-    bool moved = false;
-    for (VertexHandle* v : {&s.from, &s.to})
-      if (!isOfInput(*v) && standIn_[added(*v)].is_valid()) *v = standIn_[added(*v)], moved = true;
-    if (!moved) return true;
-    if (isOfInput(s.from) && isOfInput(s.to)) return false;
-    for (const auto& [corner, other] : {std::pair(s.from, s.to), std::pair(s.to, s.from)})
-      if (isOfInput(corner)) return !closureHolds(input_, origins_[added(other)], {corner});
-    return true;
-  }
-
-  /// Numbers the new vertices without those that were snapped.
-  void dropSnapped() {
-    std::vector<VertexHandle> renamed(origins_.size());
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < origins_.size(); ++k) {
-      if (standIn_[k].is_valid()) continue;
-      origins_[count] = origins_[k], places_[count] = places_[k];
-      renamed[k] = VertexHandle(int(input_.n_vertices() + count++));
-    }
-    origins_.resize(count), places_.resize(count);
-    const auto rename = [&](VertexHandle& v) {
-      if (!isOfInput(v)) v = renamed[added(v)];
-    };
-    for (auto& node : result_.node)
-      if (node) rename(*node);
-    for (EdgePath& path : result_.arc)
-      for (VertexHandle& v : path) rename(v);
-    for (Segment& s : segments_) rename(s.from), rename(s.to);
-    for (Crossing& crossing : crossings_) rename(crossing.vertex);
-    for (const EdgeHandle e : crossed_) {
-      int* next = &onEdge_[e.idx()];
-      while (*next != kNone)
-        if (crossings_[*next].vertex.is_valid())
-          next = &crossings_[*next].before;
-        else
-          *next = crossings_[*next].before;
-    }
-    std::erase_if(crossed_, [&](EdgeHandle e) { return onEdge_[e.idx()] == kNone; });
   }
 
   // --- cutting triangles
@@ -303,9 +183,9 @@ class Insertion {
   /// Those that an arc passes through or has a vertex on, ascending.
   void cutTriangles() {
     std::stable_sort(segments_.begin(), segments_.end(),
-                     [](const Segment& a, const Segment& b) { return a.triangle < b.triangle; });
+                     [](const ArcSegment& a, const ArcSegment& b) { return a.triangle < b.triangle; });
     std::vector<bool> isCut(input_.n_faces(), false);
-    for (const Segment& s : segments_) isCut[s.triangle.idx()] = true;
+    for (const ArcSegment& s : segments_) isCut[s.triangle.idx()] = true;
     for (const auto e : crossed_)
       for (const int k : {0, 1})
         if (const auto f = input_.face_handle(input_.halfedge_handle(e, k)); f.is_valid())
@@ -318,7 +198,7 @@ class Insertion {
     }
   }
 
-  void cut(FaceHandle f, std::span<const Segment> segments) {
+  void cut(FaceHandle f, std::span<const ArcSegment> segments) {
     findOutline(f);
     if (segments.empty()) return triangulate(f, 0, 0);
     if (segments.size() == 1 && cutInTwo(f, segments.front())) return;
@@ -336,23 +216,24 @@ class Insertion {
     cells_.clear();
     HalfedgeHandle h = input_.halfedge_handle(f);
     for (Quanta side = 0; side < 3; ++side, h = input_.next_halfedge_handle(h)) {
-      cells_.push_back({input_.from_vertex_handle(h), {Line::Kind::Side, side}});
+      cells_.push_back({input_.from_vertex_handle(h), {ChartLine::Kind::Side, side}});
       const EdgeHandle e = input_.edge_handle(h);
       if (onEdge_[e.idx()] == kNone) continue;
       const std::size_t first = cells_.size();
       for (int k = onEdge_[e.idx()]; along_[k].is_valid(); ++k)
-        cells_.push_back({along_[k], {Line::Kind::Side, side}});
+        cells_.push_back({along_[k], {ChartLine::Kind::Side, side}});
       if (input_.halfedge_handle(e, 0) != h) std::reverse(cells_.begin() + long(first), cells_.end());
     }
   }
 
   /// The outline, from one of its vertices to another.
-  bool cutInTwo(FaceHandle f, const Segment& segment) {
+  bool cutInTwo(FaceHandle f, const ArcSegment& segment) {
     std::size_t i = cells_.size(), j = i;
     for (std::size_t k = 0; k < cells_.size(); ++k)
-      if (cells_[k].vertex == segment.from || cells_[k].vertex == segment.to) (i < cells_.size() ? j : i) = k;
+      if (cells_[k].vertex == segment.end[0] || cells_[k].vertex == segment.end[1])
+        (i < cells_.size() ? j : i) = k;
     if (j == cells_.size()) return false;
-    triangulate(f, splitCell(0, i, j, {Line::Kind::Cut, kNone}), 0);
+    triangulate(f, splitCell(0, i, j, {ChartLine::Kind::Cut, kNone}), 0);
     triangulate(f, 0, 0);
     return true;
   }
@@ -363,11 +244,11 @@ class Insertion {
 
   /// The segments and the sides of the outline, by vertex and counter-clockwise; around a vertex of the
   /// outline they begin with the way on along it, and end with the way back.
-  void addSpokes(FaceHandle f, std::span<const Segment> segments) {
+  void addSpokes(FaceHandle f, std::span<const ArcSegment> segments) {
     constexpr int kBack = 4;
     vertices_.clear();
     for (const auto& corner : outline_) vertices_.push_back(corner.vertex);
-    for (const Segment& s : segments) vertices_.insert(vertices_.end(), {s.from, s.to});
+    for (const ArcSegment& s : segments) vertices_.insert(vertices_.end(), s.end.begin(), s.end.end());
     std::sort(vertices_.begin(), vertices_.end());
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     std::array<FixedVector, 3> sides;
@@ -383,17 +264,18 @@ class Insertion {
       spokes_.push_back({next, here, kBack, side, 0, true});  // the outside is no cell
     }
     const auto rank = [&](int at, int direction) {
-      if (onSide_[at] == kNone) return direction;
+      if (onSide_[at] == kNone) return direction & 3;
       // All inner spokes lie within 180 degrees to the left of the side.
       const FixedVector side = sides[onSide_[at]];
       TRIMQUAD_ASSERT(sign(cross(side, rotated({1, 0}, direction))) > 0);
       return (direction - quadrantOf(side)) & 3;
     };
-    for (const Segment& s : segments) {
-      const int from = numberOf(s.from), to = numberOf(s.to);
-      spokes_.push_back({from, to, rank(from, s.direction), s.line});
-      spokes_.push_back({to, from, rank(to, (s.direction + 2) & 3), s.line});
-    }
+    for (const ArcSegment& s : segments)
+      for (const int k : {0, 1}) {
+        const int at = numberOf(s.end[k]);
+        spokes_.push_back(
+            {at, numberOf(s.end[1 - k]), s.moved[k] ? 1 : rank(at, s.direction + 2 * k), s.line});
+      }
     std::sort(spokes_.begin(), spokes_.end(),
               [](const Spoke& a, const Spoke& b) { return a.at != b.at ? a.at < b.at : a.rank < b.rank; });
     findTwins();
@@ -436,13 +318,13 @@ class Insertion {
       return;
     }
     const auto [i, j] = shortestDiagonal(begin);
-    triangulate(f, splitCell(begin, i, j, {Line::Kind::Cut, cuts}), cuts + 1);
+    triangulate(f, splitCell(begin, i, j, {ChartLine::Kind::Cut, cuts}), cuts + 1);
     triangulate(f, begin, cuts + 1);
   }
 
   /// What is on the left of the diagonal of the last cell goes to the end, what is on the right stays.
   /// Returns where the former begins.
-  std::size_t splitCell(std::size_t begin, std::size_t i, std::size_t j, const Line& diagonal) {
+  std::size_t splitCell(std::size_t begin, std::size_t i, std::size_t j, const ChartLine& diagonal) {
     const std::size_t n = cells_.size() - begin;
     for (std::size_t k = i; k < j; ++k) cells_.push_back(CellCorner(cells_[begin + k]));
     cells_.push_back({cells_[begin + j].vertex, diagonal});
@@ -459,8 +341,8 @@ class Insertion {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = i + 2; j < n; ++j) {
-        const Line &a = cell[i].side, &b = cell[(i + n - 1) % n].side, &c = cell[j].side,
-                   &d = cell[j - 1].side;
+        const ChartLine &a = cell[i].side, &b = cell[(i + n - 1) % n].side, &c = cell[j].side,
+                        &d = cell[j - 1].side;
         if (a == c || a == d || b == c || b == d) continue;
         const double length = (place(cell[i].vertex) - place(cell[j].vertex)).squaredNorm();
         if (length < least) least = length, best = {i, j};
@@ -473,18 +355,17 @@ class Insertion {
   const SurfaceMesh& input_;
   const TMesh& tmesh_;
   RefinedMesh& surface_;
-  std::vector<Origin> origins_;   ///< of the new vertices
-  std::vector<Vector3d> places_;  ///< likewise
-  std::vector<int> onEdge_;       ///< by edge: its last in `crossings_`; then its first in `along_`
+  ExactArcs arcs_;
+  std::vector<Origin>& origins_ = arcs_.origins;
+  std::vector<Vector3d>& places_ = arcs_.places;
+  std::vector<EdgeHandle>& crossed_ = arcs_.crossed;
+  std::vector<int>& onEdge_ = arcs_.onEdge;  ///< until they are sorted: by edge, its last in `crossings_`
+  std::vector<VertexHandle>& along_ = arcs_.along;
+  std::vector<ArcSegment>& segments_ = arcs_.segments;
+  ArcPaths& result_ = arcs_.paths;
   std::vector<Crossing> crossings_;
-  std::vector<VertexHandle> along_;  ///< those on each edge, followed by an invalid one
   std::map<SurfacePoint, VertexHandle> inTriangle_;
-  std::vector<EdgeHandle> crossed_;
-  std::vector<Segment> segments_;      ///< through triangles
-  std::vector<Load> load_;             ///< by triangle
-  std::vector<bool> taken_;            ///< by vertex of the input: an arc runs through it
-  std::vector<VertexHandle> standIn_;  ///< by new vertex: that of the input it is snapped to, if any
-  std::vector<CellCorner> cells_;      ///< being triangulated, the next one last
+  std::vector<CellCorner> cells_;  ///< being triangulated, the next one last
   // Of the triangle that is being cut:
   std::vector<CellCorner> outline_;
   std::vector<VertexHandle> vertices_;
@@ -492,7 +373,6 @@ class Insertion {
   std::vector<Spoke> spokes_;
   std::vector<std::size_t> firstSpoke_;  ///< by vertex
   std::vector<TrianglePart> parts_;
-  ArcPaths result_;
 };
 
 }  // namespace
