@@ -19,11 +19,12 @@ MOST_REPEATS = 20
 class Mapped:
     """The one region of a mesh file and its seamless map.
 
-    edge_length in model units; boundary 'free' or 'aligned'. Sharp edges are not followed. Raises Error.
+    edge_length in model units; boundary 'free' or 'aligned'; align: names of edges, such as 'loop:1', that are aligned
+    besides. Sharp edges are not followed. Raises Error.
     """
 
-    def __init__(self, path, edge_length, boundary="free"):
-        self.path, self.edge_length, self.boundary = path, edge_length, boundary
+    def __init__(self, path, edge_length, boundary="free", align=()):
+        self.path, self.edge_length, self.boundary, self.align = path, edge_length, boundary, list(align)
         self.progress = load().Progress()
         self.model = self.fresh_model()
         if len(self.model.regions) != 1:
@@ -37,8 +38,8 @@ class Mapped:
     def fresh_model(self):
         native = load()
         features = native.FeatureOptions(
-            features="ignore", angle=30, align_boundary=self.boundary == "aligned", align=[], free=[], vertices=[],
-            points=[], quad_length=self.edge_length,
+            features="ignore", angle=30, align_boundary=self.boundary == "aligned", align=self.align, free=[],
+            vertices=[], points=[], quad_length=self.edge_length,
         )
         return native.mesh_model(native.repair(native.read_mesh(self.path)), features, self.progress)
 

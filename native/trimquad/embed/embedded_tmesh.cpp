@@ -71,7 +71,9 @@ void verifyLoop(const EmbeddedTMesh& embedded, const Occupation& occupied, Patch
 
 template <typename Status>
 int countOfKept(const Status& status) {
-  return int(std::count_if(status.begin(), status.end(), [](const auto& s) { return !s.deleted(); }));
+  int count = 0;
+  for (const auto& s : status) count += !s.deleted();
+  return count;
 }
 
 template <typename Item>

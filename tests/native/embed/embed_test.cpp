@@ -149,20 +149,21 @@ TEST(Embed, anArcOfLengthZeroOnTheGridNeedsNoNewVertices) {
   EXPECT_EQ(embedded.counters.inserted, 0);
 }
 
-TEST(Embed, arcsWithNothingElseNearRunAlongEdges) {
-  // Two feature points far from each other, their arcs slanted against the mesh.
-  const Progress progress;
+namespace {
+
+/// A slanted sheet of 40 x 40 cells of 0.2 quads with some of its vertices as feature points.
+GridMap slantedSheet(const std::vector<std::array<int, 2>>& features) {
   constexpr int kCells = 40;
   GridMap map = planarMap(sheet(
       kCells, kCells, [](int i, int j) { return Eigen::Vector2d(0.2 * i + 0.06 * j, 0.2 * j - 0.06 * i); }));
-  for (const int v : {10 * (kCells + 1) + 12, 29 * (kCells + 1) + 30})
-    map.featurePoints.push_back(VertexHandle(v));
-  const TMesh tmesh = partition(map, progress);
+  for (const auto& [i, j] : features) map.featurePoints.push_back(VertexHandle(j * (kCells + 1) + i));
+  return map;
+}
+
+/// Arcs run along edges of the refined mesh and meet in nodes only. How many vertices they needed.
+int inserted(const GridMap& map, int& crossings) {
   RefinedMesh surface;
-  const ArcPaths paths = insertArcs(map, tmesh, surface);
-  const int inserted = int(surface.mesh.n_vertices() - map.mesh.n_vertices());
-  EXPECT_GT(paths.crossings, 200);
-  EXPECT_LT(inserted, paths.crossings / 10);
+  const ArcPaths paths = insertArcs(map, partition(map, Progress()), surface);
   std::set<VertexHandle> inside;
   for (const auto& path : paths.arc)
     for (std::size_t k = 1; k < path.size(); ++k) {
@@ -170,6 +171,24 @@ TEST(Embed, arcsWithNothingElseNearRunAlongEdges) {
       const bool isNew = k + 1 == path.size() || inside.insert(path[k]).second;
       EXPECT_TRUE(isNew);
     }
+  crossings = paths.crossings;
+  return int(surface.mesh.n_vertices() - map.mesh.n_vertices());
+}
+
+}  // namespace
+
+TEST(Embed, arcsWithNothingElseNearRunAlongEdges) {
+  // Two feature points far from each other, their arcs slanted against the mesh.
+  int crossings = 0;
+  EXPECT_LT(inserted(slantedSheet({{12, 10}, {30, 29}}), crossings), 20);
+  EXPECT_GT(crossings, 200);
+}
+
+TEST(Embed, arcsBesideEachOtherRunAlongEdgesOnEitherSide) {
+  // Two feature points side by side: pairs of arcs pass through the same triangles.
+  int crossings = 0;
+  EXPECT_LT(inserted(slantedSheet({{20, 20}, {21, 21}}), crossings), 40);
+  EXPECT_GT(crossings, 200);
 }
 
 TEST(Embed, anArcThatSlidesKeepsItsPathAsFarAsItCan) {
