@@ -7,8 +7,8 @@ namespace {
 
 class Detours {
  public:
-  Detours(const std::vector<PlanarLoop>& loops, const std::vector<bool>& movable)
-      : loops_(loops), movable_(movable) {}
+  Detours(const SimpleLoops& cell, const std::vector<bool>& movable)
+      : loops_(cell.loops), spurs_(cell.spurs), movable_(movable) {}
 
   std::optional<Detour> shortest() const {
     std::optional<Detour> best;
@@ -34,12 +34,17 @@ class Detours {
     std::vector<size_t> seen;
     for (const auto& [distance, k] : sorted) {
       if (!leadsInside(loops_[0], from, hole[k].at) || !leadsInside(hole, k, start.at) ||
-          crossings(loops_, start, hole[k]) > 0)
+          crossings(loops_, start, hole[k]) > 0 || crossesSpur(start, hole[k]))
         continue;
       seen.push_back(k);
       if (seen.size() == 2) break;
     }
     return seen;
+  }
+
+  bool crossesSpur(const PlanarCorner& p, const PlanarCorner& q) const {
+    return std::any_of(spurs_.begin(), spurs_.end(),
+                       [&](const Spur& spur) { return meet(p, q, spur[0], spur[1]); });
   }
 
   std::optional<Detour> through(size_t side, size_t h) const {
@@ -67,9 +72,12 @@ class Detours {
     });
   }
 
-  /// Whether what comes to the other cell is a polygon without other holes.
+  /// Whether what comes to the other cell is a polygon without other holes, and no spur leads there.
   bool isFree(const Detour& detour) const {
     PlanarLoop between = stretch(loops_[detour.hole], detour.exit, detour.entry);
+    for (size_t k = 1; k + 1 < between.size(); ++k)
+      for (const Spur& spur : spurs_)
+        if (between[k].point == spur[0].point || between[k].point == spur[1].point) return false;
     between.push_back(corner(detour.side));
     between.push_back(corner(detour.side + 1));
     if (doubleArea(between) <= 0) return false;
@@ -79,13 +87,14 @@ class Detours {
   }
 
   const std::vector<PlanarLoop>& loops_;
+  const std::vector<Spur>& spurs_;
   const std::vector<bool>& movable_;
 };
 
 }  // namespace
 
-std::optional<Detour> shortestDetour(const std::vector<PlanarLoop>& loops, const std::vector<bool>& movable) {
-  return Detours(loops, movable).shortest();
+std::optional<Detour> shortestDetour(const SimpleLoops& cell, const std::vector<bool>& movable) {
+  return Detours(cell, movable).shortest();
 }
 
 }  // namespace trimquad

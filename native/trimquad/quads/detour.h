@@ -15,9 +15,9 @@ struct Detour {
   WideQuanta length;        ///< squared, of both parts
 };
 
-/// The shortest one that crosses nothing and has no other hole between itself and the side. At a corner that
-/// a hole and the outer loop have in common only the sides beside it can be led through that hole. Exact.
-/// \param loops  simple ones, the outer one first \param movable  by side of the outer loop
-std::optional<Detour> shortestDetour(const std::vector<PlanarLoop>& loops, const std::vector<bool>& movable);
+/// The shortest one that crosses nothing and has no other hole between itself and the side. Where a hole and
+/// the outer loop have a corner in common, only the sides beside it can be led through that hole. Exact.
+/// \param movable  by side of the outer loop
+std::optional<Detour> shortestDetour(const SimpleLoops& cell, const std::vector<bool>& movable);
 
 }  // namespace trimquad

@@ -28,9 +28,9 @@ class DiskMaker {
   DiskMaker(QuadMesh& quads, std::vector<PlanarCell> cells) : quads_(quads), cells_(std::move(cells)) {}
 
   void run() {
-    for (auto& cell : cells_)
-      while (!isDisk(cell) && simplePolygons(cell.loops).innerEnds > 0)
-        if (!leadSideThroughHole(cell)) break;
+    for (size_t k = 0; k < cells_.size(); ++k)  // more may be added
+      while (!isDisk(cells_[k]) && simplePolygons(cells_[k].loops).innerEnds > 0)
+        if (!leadSideThroughHole(k)) break;
     for (const auto& cell : cells_) {
       if (isDisk(cell)) continue;
       for (const auto& polygon : simplePolygons(cell.loops).polygons) {
@@ -49,43 +49,77 @@ class DiskMaker {
     return std::adjacent_find(points.begin(), points.end()) == points.end();
   }
 
-  bool leadSideThroughHole(PlanarCell& cell) {
+  bool leadSideThroughHole(size_t k) {
     if (!sides_) sides_.emplace(quads_);
-    std::vector<PlanarLoop> loops = dividedWherePinched(cell.loops);
+    const CellId id = cells_[k].cell;
+    SimpleLoops simple = dividedWherePinched(cells_[k].loops);
+    auto& outer = simple.loops[0];
     std::vector<bool> movable;
-    for (size_t k = 0; k < loops[0].size(); ++k)
-      movable.push_back(sides_->isMovable(cell.cell, sideOf(loops[0], k)));
-    const auto detour = shortestDetour(loops, movable);
+    for (size_t i = 0; i < outer.size(); ++i) movable.push_back(sides_->isMovable(id, sideOf(outer, i)));
+    const auto detour = shortestDetour(simple, movable);
     if (!detour) return false;
 
-    const Side side = sideOf(loops[0], detour->side);
-    const std::array ends{loops[0][detour->side], loops[0][(detour->side + 1) % loops[0].size()]};
-    const PlanarLoop& hole = loops[detour->hole];
+    const Side side = sideOf(outer, detour->side);
+    const std::array ends{outer[detour->side], outer[(detour->side + 1) % outer.size()]};
+    const PlanarLoop& hole = simple.loops[detour->hole];
     const PlanarLoop farBank = stretch(hole, detour->entry, detour->exit),
                      nearBank = stretch(hole, detour->exit, detour->entry);
     const CellId other = sides_->across(side).value();
-    moveArea(cell.cell, other, loops, ends, nearBank);
-    moveBoundary(cell.cell, other, nearBank);
+    PlanarLoop between = nearBank;
+    between.insert(between.end(), ends.begin(), ends.end());
+    moveArea(id, other, double(doubleArea(between)) / double(doubleArea(simple.loops)));
+    moveBoundary(id, other, nearBank);
     addBank(other, ends, nearBank);
-    loops[0] = withWay(loops[0], ends[0], ends[1], farBank);
-    loops.erase(loops.begin() + long(detour->hole));
-    cell.loops = joinedWherePinched(std::move(loops));
-    setLoops(cell);
+    outer = withWay(outer, ends[0], ends[1], farBank);
+    simple.loops.erase(simple.loops.begin() + long(detour->hole));
+    std::vector<PlanarLoop> apart;
+    cells_[k].loops = joinedWherePinched(std::move(simple), apart);
+    for (auto& part : apart) separate(k, std::move(part));
+    setLoops(cells_[k]);
     return true;
+  }
+
+  /// A part of a cell that has no more than a side in common with the rest becomes a cell, with the holes
+  /// inside it.
+  void separate(size_t k, PlanarLoop part) {
+    const CellId from = cells_[k].cell, id{int(quads_.cells.size())};
+    quads_.cells.push_back(quads_.cells[from.index]);
+    quads_.cells.back().area = 0;
+    PlanarCell separated{id, {part}};
+    auto& loops = cells_[k].loops;
+    for (size_t l = 1; l < loops.size();) {
+      if (isInside(part, loops[l][0].at)) {
+        separated.loops.push_back(loops[l]);
+        loops.erase(loops.begin() + long(l));
+      } else {
+        ++l;
+      }
+    }
+    const double here = double(doubleArea(separated.loops)), rest = double(doubleArea(loops));
+    moveArea(from, id, here / (here + rest));
+    for (const auto& loop : separated.loops) {
+      PlanarLoop closed = loop;
+      closed.push_back(loop[0]);
+      moveBoundary(from, id, closed);
+    }
+    setLoops(separated);
+    cells_.push_back(std::move(separated));
   }
 
   static Side sideOf(const PlanarLoop& loop, size_t k) {
     return {QuadPointId{loop[k].point}, QuadPointId{loop[(k + 1) % loop.size()].point}};
   }
 
-  void moveArea(CellId from, CellId to, const std::vector<PlanarLoop>& loops,
-                const std::array<PlanarCorner, 2>& ends, PlanarLoop between) {
-    WideQuanta whole = 0;
-    for (const auto& loop : loops) whole += doubleArea(loop);
-    between.insert(between.end(), ends.begin(), ends.end());
-    auto& area = quads_.cells[from.index].area;
-    const double moved = area * double(doubleArea(between)) / double(whole);
-    area -= moved;
+  static WideQuanta doubleArea(const PlanarLoop& loop) { return trimquad::doubleArea(loop); }
+  static WideQuanta doubleArea(const std::vector<PlanarLoop>& loops) {
+    WideQuanta sum = 0;
+    for (const auto& loop : loops) sum += doubleArea(loop);
+    return sum;
+  }
+
+  void moveArea(CellId from, CellId to, double part) {
+    const double moved = part * quads_.cells[from.index].area;
+    quads_.cells[from.index].area -= moved;
     quads_.cells[to.index].area += moved;
   }
 

@@ -1,7 +1,6 @@
 #include "trimquad/quads/extract_quads.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "trimquad/base/error.h"
@@ -83,7 +82,7 @@ class Extraction {
       auto& polygon = cell.loops.emplace_back();
       for (const auto& p : loop)
         if (p.kept) polygon.push_back({loops_.pointOf(p)});
-      if (polygon.size() < 3 || (pinched && (cell.full || bordersItself(polygon))))
+      if (polygon.size() < 3 || (pinched && cell.full) || hasLoopSide(polygon))
         throw coarseError("extract",
                           "a quad would touch itself, the surface is less than a quad wide there; use a "
                           "shorter edge length",
@@ -93,16 +92,11 @@ class Extraction {
     if (pinched || apart) draw(c);
   }
 
-  /// Whether the polygon runs along one side twice.
-  static bool bordersItself(const QuadMesh::Polygon& polygon) {
-    std::vector<std::array<QuadPointId, 2>> sides;
-    for (size_t k = 0; k < polygon.size(); ++k) {
-      const auto [low, high] = std::minmax(polygon[k], polygon[(k + 1) % polygon.size()]);
-      sides.push_back({low, high});
-    }
-    std::sort(sides.begin(), sides.end());
-    return std::adjacent_find(sides.begin(), sides.end()) != sides.end() ||
-           std::any_of(sides.begin(), sides.end(), [](const auto& s) { return s[0] == s[1]; });
+  /// Whether a side of the polygon ends where it starts.
+  static bool hasLoopSide(const QuadMesh::Polygon& polygon) {
+    for (size_t k = 0; k < polygon.size(); ++k)
+      if (polygon[k] == polygon[(k + 1) % polygon.size()]) return true;
+    return false;
   }
 
   void addSides(int c, const CellLoop& loop) {

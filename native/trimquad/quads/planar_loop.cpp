@@ -40,43 +40,91 @@ std::size_t positionIn(const PlanarLoop& loop, int point) {
   return std::size_t(found - loop.begin());
 }
 
-std::vector<PlanarLoop> dividedWherePinched(const std::vector<PlanarLoop>& loops) {
-  std::vector<PlanarLoop> divided;
-  for (const auto& loop : loops) {
-    PlanarLoop open;
-    std::vector<PlanarLoop> closed;
-    for (const auto& corner : loop) {
-      const std::size_t before = positionIn(open, corner.point);
-      if (before < open.size() && !corner.inner) {
-        closed.emplace_back(open.begin() + long(before), open.end());
-        open.resize(before);
-      }
-      open.push_back(corner);
+namespace {
+
+/// Takes spurs out of a loop until it has none; its parts are loops.
+void divideAlongSpurs(PlanarLoop loop, SimpleLoops& simple, std::vector<PlanarLoop>& parts) {
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      if (loop[i].point != loop[(j + 1) % n].point || loop[i + 1].point != loop[j].point) continue;
+      if (j < i + 4 || n < j - i + 4) continue;  // one of the parts is no polygon
+      simple.spurs.push_back({loop[i], loop[j]});
+      const PlanarLoop beyond(loop.begin() + long(i) + 1, loop.begin() + long(j));
+      loop.erase(loop.begin() + long(i) + 1, loop.begin() + long(j) + 1);
+      loop.erase(loop.begin() + long((i + 1) % loop.size()));  // where the way back ends
+      divideAlongSpurs(std::move(loop), simple, parts);
+      return divideAlongSpurs(beyond, simple, parts);
     }
-    closed.push_back(open);
-    // The outer part first, as the outer loop was.
-    const auto outer =
-        std::find_if(closed.begin(), closed.end(), [](const auto& l) { return doubleArea(l) > 0; });
-    if (outer != closed.end()) std::rotate(closed.begin(), outer, outer + 1);
-    divided.insert(divided.end(), closed.begin(), closed.end());
-  }
-  return divided;
+  parts.push_back(std::move(loop));
 }
 
-std::vector<PlanarLoop> joinedWherePinched(std::vector<PlanarLoop> loops) {
+void divideAtPoints(const PlanarLoop& loop, std::vector<PlanarLoop>& parts) {
+  PlanarLoop open;
+  for (const auto& corner : loop) {
+    const std::size_t before = positionIn(open, corner.point);
+    if (before < open.size() && !corner.inner) {
+      parts.emplace_back(open.begin() + long(before), open.end());
+      open.resize(before);
+    }
+    open.push_back(corner);
+  }
+  parts.push_back(std::move(open));
+}
+
+}  // namespace
+
+SimpleLoops dividedWherePinched(const std::vector<PlanarLoop>& loops) {
+  SimpleLoops simple;
+  std::vector<PlanarLoop> parts;
+  for (const auto& loop : loops) divideAlongSpurs(loop, simple, parts);
+  for (const auto& part : parts) divideAtPoints(part, simple.loops);
+  const auto outer =
+      std::max_element(simple.loops.begin(), simple.loops.end(),
+                       [](const auto& a, const auto& b) { return doubleArea(a) < doubleArea(b); });
+  std::rotate(simple.loops.begin(), outer, outer + 1);
+  return simple;
+}
+
+std::vector<PlanarLoop> joinedWherePinched(SimpleLoops simple, std::vector<PlanarLoop>& apart) {
+  auto& loops = simple.loops;
+  // b comes into a behind the corner, with what leads there and back.
+  const auto join = [&](std::size_t a, std::size_t corner, std::size_t b, std::size_t start, bool bySpur) {
+    std::rotate(loops[b].begin(), loops[b].begin() + long(start), loops[b].end());
+    PlanarLoop detour = loops[b];
+    if (bySpur) detour.push_back(detour.front()), detour.push_back(loops[a][corner]);
+    if (!bySpur) std::rotate(detour.begin(), detour.begin() + 1, detour.end());
+    loops[a].insert(loops[a].begin() + long(corner) + 1, detour.begin(), detour.end());
+    loops.erase(loops.begin() + long(b));
+  };
+  for (const auto& spur : simple.spurs)
+    for (std::size_t a = 0; a < loops.size(); ++a) {
+      std::size_t i = positionIn(loops[a], spur[0].point), j = positionIn(loops[a], spur[1].point);
+      if (i == loops[a].size() && j == loops[a].size()) continue;
+      if (i < loops[a].size() && j < loops[a].size()) {
+        apart.push_back(stretch(loops[a], i, j));
+        loops[a] = stretch(loops[a], j, i);
+        break;
+      }
+      const int here = i < loops[a].size() ? 0 : 1;
+      for (std::size_t b = a + 1; b < loops.size(); ++b) {
+        const std::size_t there = positionIn(loops[b], spur[1 - here].point);
+        if (there == loops[b].size()) continue;
+        join(a, here == 0 ? i : j, b, there, true);
+        break;
+      }
+      break;
+    }
   for (std::size_t a = 0; a < loops.size(); ++a)
     for (std::size_t b = a + 1; b < loops.size();) {
-      const auto common = std::find_if(loops[a].begin(), loops[a].end(), [&](const PlanarCorner& c) {
-        return positionIn(loops[b], c.point) < loops[b].size();
-      });
-      if (common == loops[a].end()) {
+      std::size_t corner = 0, start = loops[b].size();
+      for (; corner < loops[a].size(); ++corner)
+        if ((start = positionIn(loops[b], loops[a][corner].point)) < loops[b].size()) break;
+      if (corner == loops[a].size()) {
         ++b;
         continue;
       }
-      auto& other = loops[b];
-      std::rotate(other.begin(), other.begin() + long(positionIn(other, common->point)), other.end());
-      loops[a].insert(common, other.begin(), other.end());
-      loops.erase(loops.begin() + long(b));
+      join(a, corner, b, start, false);
       b = a + 1;
     }
   return loops;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "trimquad/base/fixed.h"
@@ -43,10 +44,19 @@ PlanarLoop stretch(const PlanarLoop& loop, std::size_t from, std::size_t to);
 PlanarLoop withWay(const PlanarLoop& loop, const PlanarCorner& from, const PlanarCorner& to,
                    const PlanarLoop& way);
 
-/// Divides loops that come through a point other than an inner one twice into such as do not. The outer
-/// loop, or the outer part of it, stays the first.
-std::vector<PlanarLoop> dividedWherePinched(const std::vector<PlanarLoop>& loops);
-/// The way back: loops with a common point become one that comes through it twice.
-std::vector<PlanarLoop> joinedWherePinched(std::vector<PlanarLoop> loops);
+/// A side that a loop, or two loops, run along in both directions: between two of its own parts.
+using Spur = std::array<PlanarCorner, 2>;
+
+/// Simple loops that are joined by common points, or by spurs.
+struct SimpleLoops {
+  std::vector<PlanarLoop> loops;  ///< the outer one first, as far as areas tell
+  std::vector<Spur> spurs;
+};
+
+/// Divides loops along their spurs, and where they come through a point other than an inner one twice.
+SimpleLoops dividedWherePinched(const std::vector<PlanarLoop>& loops);
+/// The way back: loops with a common point, or with the two ends of a spur, become one that comes through
+/// these twice. Spurs with both ends in one loop divide it; `apart` gets the parts beyond them.
+std::vector<PlanarLoop> joinedWherePinched(SimpleLoops simple, std::vector<PlanarLoop>& apart);
 
 }  // namespace trimquad

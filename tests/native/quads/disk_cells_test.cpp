@@ -61,6 +61,30 @@ void align(GridMap& map, const std::function<bool(Eigen::Vector3d, Eigen::Vector
   }
 }
 
+/// A plane ring whose map shifts by `shift` quads around the hole, between radii in quads.
+GridMap dislocation(Eigen::Vector2d shift, Eigen::Vector2d offset, double inner, double outer) {
+  constexpr int kAround = 48, kAcross = 24;
+  MappedSoup mapped;
+  const auto place = [&](int i, int j) -> Eigen::Vector2d {
+    const double angle = 2 * M_PI * i / kAround, radius = inner + (outer - inner) * j / kAcross;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+  };
+  for (int j = 0; j <= kAcross; ++j)
+    for (int i = 0; i < kAround; ++i) mapped.soup.points.push_back({place(i, j).x(), place(i, j).y(), 0});
+  const auto vertex = [&](int i, int j) { return j * kAround + i % kAround; };
+  const auto at = [&](int i, int j) -> Eigen::Vector2d {
+    return offset + place(i, j) + shift * (double(i) / kAround);
+  };
+  for (int j = 0; j < kAcross; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      mapped.add({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1)},
+                 {at(i, j), at(i, j + 1), at(i + 1, j + 1)});
+      mapped.add({vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j)},
+                 {at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+    }
+  return gridMapOf(mapped);
+}
+
 bool isOn(double x, double value) {
   return std::abs(x - value) < 1e-9;
 }
@@ -136,4 +160,16 @@ TEST(DiskCells, aCellWithAlignedSidesOnlyIsCutByDiagonals) {
   expectManifold(quads, map);
   EXPECT_EQ(withHoles(quads), 1);
   EXPECT_EQ(wrongValences(quads), 2);
+}
+
+TEST(DiskCells, cellsThatReachAroundAHoleToBothSidesOfASide) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const Eigen::Vector2d& shift : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, -1), Eigen::Vector2d(1, 1)})
+    for (int k = 0; k < 40 && !testing::Test::HasFailure(); ++k) {
+      const Eigen::Vector2d offset(unit(random), unit(random));
+      SCOPED_TRACE("shift " + std::to_string(shift.x()) + ' ' + std::to_string(shift.y()) + ", offset " +
+                   std::to_string(offset.x()) + ' ' + std::to_string(offset.y()));
+      extractSound(dislocation(shift, offset, 0.3, 3.3));
+    }
 }
