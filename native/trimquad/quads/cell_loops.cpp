@@ -240,6 +240,15 @@ bool CellLoops::bringIntoOneChart(std::vector<CellLoop>& loops) const {
       const auto& h = overlay_.halfedges[p.halfedge];
       p.at = toRoot.at(h.piece)(h.at);
     }
+  return placesAgree(loops);
+}
+
+/// Whether corners that occur more than once do so in one place: around a hole the chart may be shifted.
+bool CellLoops::placesAgree(const std::vector<CellLoop>& loops) const {
+  std::map<int, FixedVector> places;
+  for (const auto& loop : loops)
+    for (const auto& p : loop)
+      if (p.kept && places.emplace(pointOf(p), p.at).first->second != p.at) return false;
   return true;
 }
 

@@ -48,6 +48,7 @@ class CellLoops {
   std::optional<Farthest> farthestOnSide(const CellLoop& loop, size_t from, size_t to) const;
   std::optional<Farthest> farthest(const CellLoop& loop) const;
   bool bringIntoOneChart(std::vector<CellLoop>& loops) const;
+  bool placesAgree(const std::vector<CellLoop>& loops) const;
   void project(std::vector<CellLoop>& loops) const;
 
   const Parametrization& map_;

@@ -19,6 +19,7 @@ class CellMerge {
   const QuadMesh::Cell& operator[](CellId cell) const { return quads_.cells[cell.index]; }
   const QuadMesh::Point& operator[](QuadPointId point) const { return quads_.points[point.index]; }
   std::vector<Side> sidesOf(CellId cell) const;
+  void setCell(const Side& side, CellId cell) { cellAt_[side] = cell; }
   std::optional<CellId> across(const Side& side) const;
   bool isGone(CellId cell) const { return mergedInto_[cell.index].has_value(); }
 

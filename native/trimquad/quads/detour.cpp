@@ -34,7 +34,7 @@ class Detours {
     std::vector<size_t> seen;
     for (const auto& [distance, k] : sorted) {
       if (!leadsInside(loops_[0], from, hole[k].at) || !leadsInside(hole, k, start.at) ||
-          crossings(loops_, start, hole[k]) > 0 || crossesSpur(start, hole[k]))
+          crossings(loops_, start, hole[k]) > 0 || crossesSpur(start, hole[k]) || isSpur(start, hole[k]))
         continue;
       seen.push_back(k);
       if (seen.size() == 2) break;
@@ -45,6 +45,13 @@ class Detours {
   bool crossesSpur(const PlanarCorner& p, const PlanarCorner& q) const {
     return std::any_of(spurs_.begin(), spurs_.end(),
                        [&](const Spur& spur) { return meet(p, q, spur[0], spur[1]); });
+  }
+
+  bool isSpur(const PlanarCorner& p, const PlanarCorner& q) const {
+    return std::any_of(spurs_.begin(), spurs_.end(), [&](const Spur& spur) {
+      return (spur[0].point == p.point && spur[1].point == q.point) ||
+             (spur[0].point == q.point && spur[1].point == p.point);
+    });
   }
 
   std::optional<Detour> through(size_t side, size_t h) const {

@@ -98,6 +98,7 @@ class DiskMaker {
     const double here = double(doubleArea(separated.loops)), rest = double(doubleArea(loops));
     moveArea(from, id, here / (here + rest));
     for (const auto& loop : separated.loops) {
+      for (size_t i = 0; i < loop.size(); ++i) sides_->setCell(sideOf(loop, i), id);
       PlanarLoop closed = loop;
       closed.push_back(loop[0]);
       moveBoundary(from, id, closed);
@@ -165,7 +166,7 @@ class DiskMaker {
   }
 
   QuadMesh& quads_;
-  std::optional<CellMerge> sides_;  // as they were at first; a side that was led elsewhere occurs no more
+  std::optional<CellMerge> sides_;  // a side that was led elsewhere occurs no more
   std::vector<PlanarCell> cells_;
 };
 

@@ -101,12 +101,19 @@ class Divider {
     std::optional<int> fewest;
     for (const auto& [left, inner, larger, length, i, j] : candidates) {
       const int wrong = !leadsInside(chain, i, chain[j].at) + !leadsInside(chain, j, chain[i].at) +
-                        crossings(chain[i], chain[j]);
+                        crossings(chain[i], chain[j]) + isFlat(chain, i, j) + isFlat(chain, j, i);
       if (!fewest || wrong < *fewest) fewest = wrong, ends = {i, j};
       if (wrong == 0) break;
     }
     bridges_.push_back({chain[ends.first], chain[ends.second]});
     return ends;
+  }
+
+  /// Whether nothing but a line is beyond a diagonal, along straight sides.
+  static bool isFlat(const PlanarLoop& chain, size_t from, size_t to) {
+    constexpr int kFlatBits = 30;
+    const WideQuanta area = doubleArea(stretch(chain, from, to));
+    return (std::max(area, -area) << kFlatBits) <= squaredDistance(chain[from], chain[to]);
   }
 
   /// Pairs of positions in the chain that hold the same corner.
