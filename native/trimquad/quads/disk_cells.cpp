@@ -67,7 +67,7 @@ class DiskMaker {
     const CellId other = sides_->across(side).value();
     PlanarLoop between = nearBank;
     between.insert(between.end(), ends.begin(), ends.end());
-    moveArea(id, other, double(doubleArea(between)) / double(doubleArea(simple.loops)));
+    moveArea(id, other, doubleArea(between), doubleArea(simple.loops));
     moveBoundary(id, other, nearBank);
     addBank(other, ends, nearBank);
     outer = withWay(outer, ends[0], ends[1], farBank);
@@ -95,8 +95,8 @@ class DiskMaker {
         ++l;
       }
     }
-    const double here = double(doubleArea(separated.loops)), rest = double(doubleArea(loops));
-    moveArea(from, id, here / (here + rest));
+    const WideQuanta here = doubleArea(separated.loops);
+    moveArea(from, id, here, here + doubleArea(loops));
     for (const auto& loop : separated.loops) {
       for (size_t i = 0; i < loop.size(); ++i) sides_->setCell(sideOf(loop, i), id);
       PlanarLoop closed = loop;
@@ -118,8 +118,10 @@ class DiskMaker {
     return sum;
   }
 
-  void moveArea(CellId from, CellId to, double part) {
-    const double moved = part * quads_.cells[from.index].area;
+  /// What `part` is of the `whole` cell in its drawing.
+  void moveArea(CellId from, CellId to, WideQuanta part, WideQuanta whole) {
+    if (whole <= 0) return;  // turned over in the drawing
+    const double moved = std::clamp(double(part) / double(whole), 0.0, 1.0) * quads_.cells[from.index].area;
     quads_.cells[from.index].area -= moved;
     quads_.cells[to.index].area += moved;
   }
