@@ -1,15 +1,10 @@
 #pragma once
 
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "trimquad/mesh/region.h"
 
 namespace trimquad {
-
-/// Edges inside a region over which it bends sharply, by their vertices, the smaller first.
-using Creases = std::set<std::pair<VertexHandle, VertexHandle>>;
 
 struct RemeshOptions {
   double edgeLength;  ///< wanted, model units

@@ -10,6 +10,9 @@ using Eigen::Vector3d;
 
 constexpr double kGradation = 0.4;  ///< growth of the wanted length per length
 constexpr int kGradationSweeps = 3;
+/// Least wanted length on the boundary, by its edges: these are not divided, and much shorter inner ones
+/// would make slivers with them.
+constexpr double kBesideBoundary = 0.5;
 constexpr double kSmoothing = 0.8;    ///< share of the way to the neighbours' middle
 constexpr double kOffMiddle = 0.35;   ///< how far a split may be off the edge's middle, in edge lengths
 constexpr double kSplitLoss = 0.2;    ///< least share of the old quality that a split must leave
@@ -18,7 +21,7 @@ constexpr double kGoodEnough = 0.25;  ///< quality down to which smoothing may g
 
 }  // namespace
 
-WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const RemeshOptions& options)
+WorkingMesh::WorkingMesh(const Region& region, const RemeshOptions& options)
     : mesh(region.mesh),
       parameter(region.curveParameter),
       corner(region.corner),
@@ -27,12 +30,9 @@ WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const Rem
       edgeCurve(region.edgeCurve),
       surface_(*region.surface),
       options_(options),
-      creases_(creases),
-      onCrease_(mesh.n_vertices(), 0),
       settled_(mesh.n_edges(), 0) {
-  for (const auto& [a, b] : creases) onCrease_[a.idx()] = onCrease_[b.idx()] = 1;
   for (const auto v : mesh.vertices()) {
-    normal.push_back(onCrease_[v.idx()] ? Vector3d(0, 0, 0) : normalOnSheet(v));
+    normal.push_back(normalOnSheet(v));
     curvatureSize.push_back(sizeAt(mesh.point(v)));
     if (corner[v.idx()]) fixed[v.idx()] = 1;
   }
@@ -112,7 +112,6 @@ VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfa
   corner.emplace_back();
   fixed.push_back(0);
   pinned.push_back(0);
-  onCrease_.push_back(0);
   return mesh.add_vertex(point);
 }
 
@@ -141,22 +140,11 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   const auto h = mesh.halfedge_handle(e, 0);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const Vector3d middle = 0.5 * (mesh.point(a) + mesh.point(b));
-  if (isCrease(a, b)) {
-    const auto v = addVertex(surface_.closest(middle).point, Vector3d(0, 0, 0));
-    mesh.split(e, v);
-    edgeCurve.resize(mesh.n_edges());
-    disturb(v);
-    onCrease_[v.idx()] = 1;
-    creases_.erase(ordered(a, b));
-    creases_.insert(ordered(a, v));
-    creases_.insert(ordered(v, b));
-    return true;
-  }
   const auto foot = surface_.closestFacing(middle, normal[a.idx()] + normal[b.idx()]);
   const Vector3d away = foot.point - middle;
   const Vector3d facing = normal[a.idx()] + normal[b.idx()];
   const bool between = away.norm() <= kOffMiddle * length(e) &&
-                       (facing.isZero() || foot.normal.dot(facing) > 0) &&
+                       foot.normal.dot(facing) > 0 &&
                        splitQuality(h, foot.point, foot.normal) >
                            kSplitLoss * std::min(quality(mesh.face_handle(h)),
                                                  quality(mesh.face_handle(mesh.opposite_halfedge_handle(h))));
@@ -222,7 +210,7 @@ bool WorkingMesh::isBetterFlipped(EdgeHandle e) const {
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const auto c = mesh.to_vertex_handle(mesh.next_halfedge_handle(h)),
              d = mesh.to_vertex_handle(mesh.next_halfedge_handle(o));
-  if ((mesh.is_boundary(c) && mesh.is_boundary(d)) || isCrease(a, b)) return false;
+  if (mesh.is_boundary(c) && mesh.is_boundary(d)) return false;
   const double before = std::min(quality(mesh.face_handle(h)), quality(mesh.face_handle(o)));
   if (before > 0.99) return false;
   const Vector3d base = normal[c.idx()] + normal[d.idx()];
@@ -267,14 +255,26 @@ void WorkingMesh::smooth(VertexHandle v) {
 
 void WorkingMesh::updateSizes() {
   size = curvatureSize;
-  std::vector<double> sum(size.size(), 0);
+  std::vector<double> sum(size.size(), 0), least(size.size(), 0);
   for (const auto e : mesh.edges()) {
     if (!mesh.is_boundary(e)) continue;
     for (const int side : {0, 1})
       sum[mesh.to_vertex_handle(mesh.halfedge_handle(e, side)).idx()] += 0.5 * length(e);
   }
-  for (size_t v = 0; v < size.size(); ++v)
-    if (sum[v] > 0) size[v] = std::clamp(sum[v], kShortestEdge * options_.edgeLength, size[v]);
+  for (size_t v = 0; v < size.size(); ++v) {
+    if (!(sum[v] > 0)) continue;
+    size[v] = std::min(size[v], std::max(sum[v], kShortestEdge * options_.edgeLength));
+    least[v] = kBesideBoundary * sum[v];
+  }
+  for (int sweep = 0; sweep < kGradationSweeps; ++sweep)
+    for (const auto e : mesh.edges()) {
+      const auto h = mesh.halfedge_handle(e, 0);
+      double &a = least[mesh.from_vertex_handle(h).idx()], &b = least[mesh.to_vertex_handle(h).idx()];
+      const double growth = kGradation * length(e);
+      a = std::max(a, b - growth);
+      b = std::max(b, a - growth);
+    }
+  for (size_t v = 0; v < size.size(); ++v) size[v] = std::max(size[v], least[v]);
   for (int sweep = 0; sweep < kGradationSweeps; ++sweep)
     for (const auto e : mesh.edges()) {
       const auto h = mesh.halfedge_handle(e, 0);

@@ -14,11 +14,11 @@ namespace trimquad {
 /// region's surface. Elements that went away stay in place, marked deleted, until `finish`.
 class WorkingMesh {
  public:
-  WorkingMesh(const Region& region, const Creases& creases, const RemeshOptions& options);
+  WorkingMesh(const Region& region, const RemeshOptions& options);
 
   SurfaceMesh mesh;
   /// Per vertex.
-  std::vector<Eigen::Vector3d> normal;  ///< of the true surface; zero on a crease, where there are two
+  std::vector<Eigen::Vector3d> normal;  ///< of the true surface
   std::vector<double> curvatureSize;    ///< longest edge that the curvature allows
   std::vector<double> size;             ///< wanted edge length
   std::vector<double> parameter;        ///< on the curve, inside one
@@ -28,9 +28,8 @@ class WorkingMesh {
   /// Per edge.
   std::vector<std::optional<CurveId>> edgeCurve;
 
-  /// Whether a vertex may move along the boundary at most: it is on the boundary, on a crease or a feature
-  /// point.
-  bool isHeld(VertexHandle v) const { return mesh.is_boundary(v) || onCrease_[v.idx()] || pinned[v.idx()]; }
+  /// Whether a vertex may move along the boundary at most: it is on the boundary or a feature point.
+  bool isHeld(VertexHandle v) const { return mesh.is_boundary(v) || pinned[v.idx()]; }
 
   /// 1 for an equilateral triangle facing the side of `normal`, 0 for a degenerate one, negative for a folded
   /// one.
@@ -82,18 +81,9 @@ class WorkingMesh {
   Eigen::Vector3d normalOnSheet(VertexHandle v) const;
   double sizeAt(const Eigen::Vector3d& point) const;
 
-  static std::pair<VertexHandle, VertexHandle> ordered(VertexHandle a, VertexHandle b) {
-    return std::minmax(a, b);
-  }
-  bool isCrease(VertexHandle a, VertexHandle b) const {
-    return onCrease_[a.idx()] && onCrease_[b.idx()] && creases_.count(ordered(a, b)) > 0;
-  }
-
   const TrueSurface& surface_;
   RemeshOptions options_;
-  Creases creases_;
-  std::vector<char> onCrease_;  ///< by vertex
-  std::vector<char> settled_;   ///< by edge: it is not to be flipped as its two triangles are
+  std::vector<char> settled_;  ///< by edge: it is not to be flipped as its two triangles are
 };
 
 }  // namespace trimquad
