@@ -175,7 +175,7 @@ bool makesLongEdge(const WorkingMesh& work, VertexHandle v, VertexHandle to) {
   for (auto n = work.mesh.cvv_begin(v); n.is_valid(); ++n)
     if (!work.mesh.find_halfedge(*n, to).is_valid() &&
         (work.mesh.point(*n) - work.mesh.point(to)).norm() >
-        kLong * 0.5 * (work.size[n->idx()] + work.size[to.idx()]))
+            kLong * 0.5 * (work.size[n->idx()] + work.size[to.idx()]))
       return true;
   return false;
 }
@@ -197,9 +197,16 @@ void collapseShort(WorkingMesh& work) {
   }
 }
 
+/// The least quality that a collapse out of a bad triangle must leave. On a ridge, where normals say little
+/// and several slivers lie side by side, none worse than before: all of them have to go. A vertex inside a
+/// triangle leaves that one, which is as flat as those before.
+double leastQuality(const WorkingMesh& work, FaceHandle bad, VertexHandle v, VertexHandle to) {
+  if (!work.onRidge[v.idx()] && !work.onRidge[to.idx()]) return std::nextafter(work.quality(bad), 2);
+  return work.worstAround(v, work.mesh.point(v)) - (work.mesh.valence(v) == 3 ? kBad : 0);
+}
+
 /// Takes out folded triangles and slivers by whichever collapse leaves the best triangles, whatever the
-/// lengths. One that leaves none worse than before will do: of several slivers side by side all have to go. A
-/// vertex inside a triangle leaves that one, which is as flat as those before.
+/// lengths.
 void collapseBad(WorkingMesh& work) {
   for (const auto f : work.mesh.faces()) {
     if (work.quality(f) >= kBad) continue;
@@ -210,10 +217,8 @@ void collapseBad(WorkingMesh& work) {
            {HalfedgeHandle(*side), HalfedgeHandle(work.mesh.opposite_halfedge_handle(*side))}) {
         const auto v = work.mesh.from_vertex_handle(h), to = work.mesh.to_vertex_handle(h);
         if (work.isHeld(v) || makesChord(work, v, to)) continue;
-        const double allowed =
-            work.worstAround(v, work.mesh.point(v)) - (work.mesh.valence(v) == 3 ? kBad : 0);
         if (const auto after = work.qualityAfterCollapse(h);
-            after && *after > quality && *after >= allowed)
+            after && *after > quality && *after >= leastQuality(work, f, v, to))
           best = h, quality = *after;
       }
     if (best.is_valid()) work.collapse(best);

@@ -8,11 +8,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGradation = 0.4;  ///< growth of the wanted length per length
 constexpr int kGradationSweeps = 3;
-/// Least wanted length on the boundary, by its edges: these are not divided, and much shorter inner ones
-/// would make slivers with them.
-constexpr double kBesideBoundary = 0.5;
+/// Least wanted length on a boundary that is an edge of the surface within the tolerance, by its own edges:
+/// much shorter ones beside them would make slivers.
+constexpr double kBesideRidge = 0.5;
 constexpr double kSmoothing = 0.8;    ///< share of the way to the neighbours' middle
 constexpr double kOffMiddle = 0.35;   ///< how far a split may be off the edge's middle, in edge lengths
 constexpr double kSplitLoss = 0.2;    ///< least share of the old quality that a split must leave
@@ -33,7 +32,7 @@ WorkingMesh::WorkingMesh(const Region& region, const RemeshOptions& options)
       settled_(mesh.n_edges(), 0) {
   for (const auto v : mesh.vertices()) {
     normal.push_back(normalOnSheet(v));
-    curvatureSize.push_back(sizeAt(mesh.point(v)));
+    measureCurvature(mesh.point(v));
     if (corner[v.idx()]) fixed[v.idx()] = 1;
   }
   for (const auto v : region.featurePoints) {
@@ -53,19 +52,6 @@ Vector3d WorkingMesh::normalOnSheet(VertexHandle v) const {
   for (auto f = mesh.cvf_begin(v); f.is_valid(); ++f)
     sum += surface_.closest(mesh.calc_face_centroid(*f)).normal;
   return sum.norm() > 0 ? Vector3d(sum.normalized()) : nearest;
-}
-
-double WorkingMesh::sizeAt(const Vector3d& point) const {
-  const auto c = surface_.curvature(point);
-  const double k = std::max(std::abs(c.k1), std::abs(c.k2));
-  if (!(k > 0)) return options_.edgeLength;
-  // An edge of length l on a circle of curvature k is l^2 k / 8 away from it.
-  const double sag = std::sqrt(8 * options_.tolerance / k);
-  const double wanted = std::min(sag, kLargestTurn / k);
-  // Where even the shortest edge would cut off more than the tolerance, such as the lip of an inlet.
-  const double lower =
-      std::min(kShortestEdge * options_.edgeLength, std::max(sag, kTightestEdge * options_.edgeLength));
-  return std::clamp(wanted, lower, options_.edgeLength);
 }
 
 double WorkingMesh::quality(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normal) {
@@ -104,9 +90,15 @@ bool WorkingMesh::isChord(EdgeHandle e) const {
          mesh.is_boundary(mesh.to_vertex_handle(h));
 }
 
+void WorkingMesh::measureCurvature(const Vector3d& point) {
+  const double k = largestCurvature(surface_, point);
+  curvatureSize.push_back(lengthByCurvature(k, options_));
+  onRidge.push_back(isSharp(k, options_));
+}
+
 VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfaceNormal) {
   normal.push_back(surfaceNormal);
-  curvatureSize.push_back(sizeAt(point));
+  measureCurvature(point);
   size.push_back(curvatureSize.back());
   parameter.push_back(0);
   corner.emplace_back();
@@ -143,8 +135,7 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   const auto foot = surface_.closestFacing(middle, normal[a.idx()] + normal[b.idx()]);
   const Vector3d away = foot.point - middle;
   const Vector3d facing = normal[a.idx()] + normal[b.idx()];
-  const bool between = away.norm() <= kOffMiddle * length(e) &&
-                       foot.normal.dot(facing) > 0 &&
+  const bool between = away.norm() <= kOffMiddle * length(e) && foot.normal.dot(facing) > 0 &&
                        splitQuality(h, foot.point, foot.normal) >
                            kSplitLoss * std::min(quality(mesh.face_handle(h)),
                                                  quality(mesh.face_handle(mesh.opposite_halfedge_handle(h))));
@@ -264,15 +255,15 @@ void WorkingMesh::updateSizes() {
   for (size_t v = 0; v < size.size(); ++v) {
     if (!(sum[v] > 0)) continue;
     size[v] = std::min(size[v], std::max(sum[v], kShortestEdge * options_.edgeLength));
-    least[v] = kBesideBoundary * sum[v];
+    if (onRidge[v]) least[v] = kBesideRidge * sum[v];
   }
   for (int sweep = 0; sweep < kGradationSweeps; ++sweep)
     for (const auto e : mesh.edges()) {
       const auto h = mesh.halfedge_handle(e, 0);
       double &a = least[mesh.from_vertex_handle(h).idx()], &b = least[mesh.to_vertex_handle(h).idx()];
-      const double growth = kGradation * length(e);
-      a = std::max(a, b - growth);
-      b = std::max(b, a - growth);
+      const double fall = kGradation * length(e);
+      a = std::max(a, b - fall);
+      b = std::max(b, a - fall);
     }
   for (size_t v = 0; v < size.size(); ++v) size[v] = std::max(size[v], least[v]);
   for (int sweep = 0; sweep < kGradationSweeps; ++sweep)

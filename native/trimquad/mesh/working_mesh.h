@@ -20,6 +20,7 @@ class WorkingMesh {
   /// Per vertex.
   std::vector<Eigen::Vector3d> normal;  ///< of the true surface
   std::vector<double> curvatureSize;    ///< longest edge that the curvature allows
+  std::vector<char> onRidge;            ///< the radius of curvature is below the tolerance
   std::vector<double> size;             ///< wanted edge length
   std::vector<double> parameter;        ///< on the curve, inside one
   std::vector<std::optional<CornerId>> corner;
@@ -70,6 +71,7 @@ class WorkingMesh {
   void finish(Region& region) const;
 
  private:
+  void measureCurvature(const Eigen::Vector3d& point);  ///< of the next vertex
   VertexHandle addVertex(const Eigen::Vector3d& point, const Eigen::Vector3d& surfaceNormal);
   /// To be called when a vertex or the triangles around it changed: their sides may be flipped again.
   void disturb(VertexHandle v);
@@ -79,7 +81,6 @@ class WorkingMesh {
                       const Eigen::Vector3d& pointNormal) const;
   /// The true normal at a vertex, on the sheet of its triangles where several sheets of the surface meet.
   Eigen::Vector3d normalOnSheet(VertexHandle v) const;
-  double sizeAt(const Eigen::Vector3d& point) const;
 
   const TrueSurface& surface_;
   RemeshOptions options_;
