@@ -33,8 +33,8 @@ class RegionCutter {
       for (const int v : mesh_.triangles[t].vertex) box.extend(mesh_.vertices[v].point);
     model_.diagonal = box.diagonal().norm();
     auto [joined, surfaces] = joinedSurfaces(groups);
-    return {std::move(model_),   std::move(creases_),   std::move(inner_),   std::move(aligned_),
-            std::move(cadEdge_), std::move(cadVertex_), std::move(surfaces), std::move(joined)};
+    return {std::move(model_),     std::move(inner_),   std::move(aligned_), std::move(cadEdge_),
+            std::move(cadVertex_), std::move(surfaces), std::move(joined)};
   }
 
  private:
@@ -131,7 +131,6 @@ class RegionCutter {
   void makeRegion(const std::vector<int>& triangles) {
     Region region;
     region.name = "region " + std::to_string(model_.regions.size());
-    Creases creases;
     std::vector<int> origin;
     region.mesh = buildSurfaceMesh(soupOf(triangles, origin));
     region.surface = cadSurface(cad_, mesh_, triangles, reversed_);
@@ -145,13 +144,10 @@ class RegionCutter {
         h = region.mesh.next_halfedge_handle(h);
       for (int k = 0; k < 3; ++k, h = region.mesh.next_halfedge_handle(h)) {
         if (isCut(triangle.side[k])) putOnCurve(region, h, triangle.vertex[k], mesh_.sides[triangle.side[k]]);
-        const auto [a, b] = std::minmax({region.mesh.from_vertex_handle(h), region.mesh.to_vertex_handle(h)});
-        if (features_.crease[triangle.side[k]]) creases.insert({a, b});
       }
     }
     for (const auto v : region.mesh.vertices())
       if (points_[origin[v.idx()]]) region.featurePoints.push_back(v);
-    creases_.push_back(std::move(creases));
     model_.regions.push_back(std::move(region));
   }
 
@@ -223,7 +219,6 @@ class RegionCutter {
   std::vector<std::optional<CurveId>> curveOfEdge_;
   std::vector<std::optional<CornerId>> cornerOfVertex_;
   Model model_;
-  std::vector<Creases> creases_;
   std::vector<char> inner_, aligned_;  ///< by curve
   std::vector<int> cadEdge_;           ///< by curve
   std::vector<int> cadVertex_;         ///< by corner

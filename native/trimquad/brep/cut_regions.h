@@ -11,11 +11,10 @@ namespace trimquad {
 
 struct CutModel {
   Model model;
-  std::vector<Creases> creases;  ///< by region
-  std::vector<char> inner;       ///< by curve: whether regions are to be joined again across it
-  std::vector<char> aligned;     ///< by curve
-  std::vector<int> cadEdge;      ///< by curve
-  std::vector<int> cadVertex;    ///< by corner
+  std::vector<char> inner;      ///< by curve: whether regions are to be joined again across it
+  std::vector<char> aligned;    ///< by curve
+  std::vector<int> cadEdge;     ///< by curve
+  std::vector<int> cadVertex;   ///< by corner
   /// Of the regions after joining, in the order of their first parts.
   std::vector<std::shared_ptr<const TrueSurface>> surfaces;
   std::vector<std::vector<int>> triangles;  ///< of the welded mesh

@@ -178,8 +178,24 @@ std::vector<char> chosen(const CadModel& model, const Sharpness& edges,
 }
 
 void dropCutCreases(const WeldedMesh& mesh, FeatureEdges& features) {
-  for (size_t s = 0; s < features.crease.size(); ++s)
-    if (features.crease[s] && features.cut[*mesh.sides[s].cadEdge]) features.crease[s] = 0;
+  for (size_t s = 0; s < features.crease.size(); ++s) {
+    if (!features.crease[s]) continue;
+    const int e = *mesh.sides[s].cadEdge;
+    if (features.cut[e] && !features.inner[e]) features.crease[s] = 0;
+  }
+}
+
+/// Triangles must not reach across creases: their vertices are on these edges, the same on both sides.
+void openCreases(const WeldedMesh& mesh, FeatureEdges& features) {
+  for (size_t s = 0; s < features.crease.size(); ++s) {
+    if (!features.crease[s]) continue;
+    const int e = *mesh.sides[s].cadEdge;
+    if (features.cut[e])
+      features.crease[s] = 0;
+    else
+      features.inner[e] = 1;
+  }
+  for (size_t e = 0; e < features.cut.size(); ++e) features.cut[e] |= features.inner[e];
 }
 
 }  // namespace
@@ -280,7 +296,7 @@ FeatureEdges featureEdges(const CadModel& model, const WeldedMesh& mesh, const S
     result.cut[e] |= result.inner[e];
   }
   result.crease = edges.crease;
-  dropCutCreases(mesh, result);
+  openCreases(mesh, result);
   return result;
 }
 
@@ -290,6 +306,9 @@ void cutAlong(FeatureEdges& features, const WeldedMesh& mesh, const std::vector<
     features.cut[e] = 1;
     features.inner[e] = 0;
   }
+  for (size_t s = 0; s < features.crease.size(); ++s)
+    if (features.crease[s] && features.cut[*mesh.sides[s].cadEdge] && !features.inner[*mesh.sides[s].cadEdge])
+      features.aligned[*mesh.sides[s].cadEdge] = 1;
   dropCutCreases(mesh, features);
 }
 

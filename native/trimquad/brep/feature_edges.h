@@ -27,16 +27,16 @@ struct FeatureEdges {
   /// By CAD edge: whether the surface is opened there. Free edges; sharp ones that separate regions; and
   /// inner ones.
   std::vector<char> cut;
-  /// By CAD edge: whether it is cut only for its vertices to be the same on both sides, and lies aligned
-  /// inside a region in the end.
+  /// By CAD edge: whether it is cut only for its vertices to be the same on both sides, and lies inside a
+  /// region in the end: aligned, or one along which the region bends sharply.
   std::vector<char> inner;
-  /// By CAD edge: whether grid lines must run along it. All inner ones are.
+  /// By CAD edge: whether grid lines must run along it.
   std::vector<char> aligned;
   /// By CAD edge: the same for inner ones, if they separated regions.
   std::vector<char> alignedAsBorder;
   /// By side of the welded mesh: whether the surface turns by more than the feature angle within `reach`
-  /// (model units) to both sides of it, on an edge that is not cut. Triangles of about that size must not
-  /// reach across.
+  /// (model units) to both sides of it, on an edge that separates no regions and is not aligned. Triangles of
+  /// about that size must not reach across, so these edges are inner ones.
   std::vector<char> crease;
 };
 

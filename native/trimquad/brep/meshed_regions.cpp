@@ -23,8 +23,7 @@ void markConstraints(CutModel& cut, const std::vector<CurvePoint>& points) {
 Model meshedRegions(CutModel& cut, const std::vector<CurvePoint>& points,
                     const std::vector<std::vector<double>>& division, const RemeshOptions& options,
                     const Progress& progress) {
-  for (size_t r = 0; r < cut.model.regions.size(); ++r)
-    remesh(cut.model.regions[r], cut.model, division, cut.creases[r], options, progress);
+  for (auto& region : cut.model.regions) remesh(region, cut.model, division, options, progress);
   markConstraints(cut, points);
   Model model = joinRegions(cut.model, cut.inner, cut.surfaces);
   for (auto& region : model.regions) splitConstrainedTriangles(region);

@@ -83,7 +83,7 @@ class InnerEdges {
     std::vector<int> chosen;
     for (const auto& inner : edges_) {
       if (inner.faces.size() == 2) return {};
-      if (!origin_.features.inner[inner.edge]) chosen.push_back(inner.edge);
+      if (!origin_.features.aligned[inner.edge]) chosen.push_back(inner.edge);
     }
     return chosen;
   }

@@ -126,6 +126,7 @@ Model tessellate(const Shape& shape, const TessellateOptions& options, const Pro
     const auto curvePoints = pinPoints(cut.model.model, options.features);
     const RemeshOptions wanted{options.edgeLength, options.tolerance};
     auto division = divideCurves(cut.model.model, wanted);
+    divideByCurvature(cut.model.model, cut.model.inner, wanted, division);
     divideAt(curvePoints, division);
     divideSlits(cut.model, division);
     Model model = meshedRegions(cut.model, curvePoints, division, wanted, progress);

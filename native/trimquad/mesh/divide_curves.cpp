@@ -68,7 +68,68 @@ bool follows(const Polyline& line, int pieces, double tolerance) {
   return true;
 }
 
+/// By sample of the line: the length of pieces that the surfaces ask for, at most `longest`.
+std::vector<double> wantedPieces(const Polyline& line, const std::vector<const TrueSurface*>& surfaces,
+                                 double longest, const RemeshOptions& options) {
+  std::vector<double> wanted(line.point.size(), longest);
+  for (size_t i = 0; i < wanted.size(); ++i)
+    for (const TrueSurface* surface : surfaces)
+      if (const double k = largestCurvature(*surface, line.point[i]); !isSharp(k, options))
+        wanted[i] = std::min(wanted[i], lengthByCurvature(k, options));
+  const auto limit = [&](size_t i, size_t next) {
+    wanted[i] = std::min(wanted[i], wanted[next] + kGradation * std::abs(line.length[next] - line.length[i]));
+  };
+  for (size_t i = 1; i < wanted.size(); ++i) limit(i, i - 1);
+  for (size_t i = wanted.size() - 1; i > 0; --i) limit(i - 1, i);
+  return wanted;
+}
+
 }  // namespace
+
+double largestCurvature(const TrueSurface& surface, const Vector3d& point) {
+  const auto c = surface.curvature(point);
+  return std::max(std::abs(c.k1), std::abs(c.k2));
+}
+
+double lengthByCurvature(double k, const RemeshOptions& options) {
+  if (!(k > 0)) return options.edgeLength;
+  // An edge of length l on a circle of curvature k is l^2 k / 8 away from it.
+  const double sag = std::sqrt(8 * options.tolerance / k);
+  const double wanted = std::min(sag, kLargestTurn / k);
+  // Where even the shortest edge would cut off more than the tolerance, such as the lip of an inlet.
+  const double lower =
+      std::min(kShortestEdge * options.edgeLength, std::max(sag, kTightestEdge * options.edgeLength));
+  return std::clamp(wanted, lower, options.edgeLength);
+}
+
+void divideByCurvature(const Model& model, const std::vector<char>& chosen, const RemeshOptions& options,
+                       std::vector<std::vector<double>>& division) {
+  std::vector<std::vector<const TrueSurface*>> surfaces(model.curves.size());
+  for (const auto& region : model.regions) {
+    std::vector<char> touches(model.curves.size(), 0);
+    for (const auto& curve : region.edgeCurve)
+      if (curve) touches[curve->index] = 1;
+    for (size_t c = 0; c < touches.size(); ++c)
+      if (touches[c] && region.surface) surfaces[c].push_back(region.surface.get());
+  }
+  for (size_t c = 0; c < division.size(); ++c) {
+    if (!chosen[c]) continue;
+    const TrueCurve& curve = *model.curves[c].curve;
+    Polyline line = sampled(curve, kFewestSamples);
+    const double finest = kSamplesPerPiece * line.length.back() / (kTightestEdge * options.edgeLength);
+    if (finest > kFewestSamples) line = sampled(curve, int(std::min<double>(finest, kMostSamples)));
+    const int before = int(division[c].size()) - 1;
+    const auto wanted = wantedPieces(line, surfaces[c], line.length.back() / before, options);
+    // Lengths are measured in wanted ones from here on.
+    double last = line.length[0];
+    for (size_t i = 1; i < wanted.size(); ++i) {
+      const double step = line.length[i] - last;
+      last = line.length[i];
+      line.length[i] = line.length[i - 1] + 2 * step / (wanted[i - 1] + wanted[i]);
+    }
+    division[c] = equalPieces(line, std::max(before, int(std::lround(line.length.back()))));
+  }
+}
 
 std::vector<std::vector<double>> divideCurves(const Model& model, const RemeshOptions& options) {
   std::map<std::pair<CornerId, CornerId>, int> curvesBetween;

@@ -1,15 +1,10 @@
 #pragma once
 
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "trimquad/mesh/region.h"
 
 namespace trimquad {
-
-/// Edges inside a region over which it bends sharply, by their vertices, the smaller first.
-using Creases = std::set<std::pair<VertexHandle, VertexHandle>>;
 
 struct RemeshOptions {
   double edgeLength;  ///< wanted, model units
@@ -28,5 +23,24 @@ inline constexpr double kLargestTurn = 0.8;
 /// for very short ones. Curves shorter than the wanted length stay one piece, unless two pieces would join
 /// the same two vertices.
 std::vector<std::vector<double>> divideCurves(const Model& model, const RemeshOptions& options);
+
+/// The larger principal curvature of a surface, without sign, 1 / model unit.
+double largestCurvature(const TrueSurface& surface, const Eigen::Vector3d& point);
+
+/// The longest edge that such a curvature allows, at most the wanted one.
+double lengthByCurvature(double curvature, const RemeshOptions& options);
+
+/// Whether a surface that bends like that along a curve has an edge there, within the tolerance.
+inline bool isSharp(double curvature, const RemeshOptions& options) {
+  return curvature * options.tolerance >= 1;
+}
+
+/// Divides the chosen curves, along which regions bend, into as short pieces as these ask for beside them.
+/// Where the radius is below the tolerance the curve is an edge to both, which may be divided as before.
+void divideByCurvature(const Model& model, const std::vector<char>& chosen, const RemeshOptions& options,
+                       std::vector<std::vector<double>>& division);
+
+/// Growth of the wanted length per length.
+inline constexpr double kGradation = 0.4;
 
 }  // namespace trimquad

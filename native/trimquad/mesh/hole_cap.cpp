@@ -110,7 +110,7 @@ TriangleSoup holeCap(const std::vector<Vector3d>& loop, double edgeLength, const
   std::vector<std::vector<double>> division;
   for (const auto& side : model.curves) division.push_back({side.curve->first(), side.curve->last()});
   Region& cap = model.regions.front();
-  remesh(cap, model, division, {}, {edgeLength, edgeLength}, progress);
+  remesh(cap, model, division, {edgeLength, edgeLength}, progress);
   TriangleSoup soup;
   for (const auto v : cap.mesh.vertices()) soup.points.push_back(cap.mesh.point(v));
   for (const auto f : cap.mesh.faces()) {

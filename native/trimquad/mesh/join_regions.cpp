@@ -80,7 +80,6 @@ class RegionJoin {
       const auto [otherFrom, otherTo] = ends(sides[1]);
       glued_.unite(from, otherTo);
       glued_.unite(to, otherFrom);
-      seams_.push_back({from, to});
     }
   }
 
@@ -129,10 +128,6 @@ class RegionJoin {
       for (const auto e : part.aligned) region.aligned.push_back(edgeOf(e));
       for (const auto v : part.featurePoints) region.featurePoints.push_back(handle(p, v));
     }
-    for (const auto& [a, b] : seams_)
-      if (const auto from = vertex.find(glued_.root(a)); from != vertex.end())
-        region.aligned.push_back(
-            edgeBetween(VertexHandle(from->second), VertexHandle(vertex.at(glued_.root(b)))));
     const auto tidy = [](auto& handles) {
       std::sort(handles.begin(), handles.end());
       handles.erase(std::unique(handles.begin(), handles.end()), handles.end());
@@ -159,7 +154,6 @@ class RegionJoin {
   const std::vector<int> group_;
   std::vector<int> firstVertex_;  ///< by part
   DisjointSets glued_;            ///< of the vertices of all parts
-  std::vector<std::pair<int, int>> seams_;
   std::vector<CurveId> curve_;  ///< by curve of the parts: its new number
   Model model_;
 };

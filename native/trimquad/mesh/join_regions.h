@@ -6,8 +6,8 @@
 
 namespace trimquad {
 
-/// Joins regions across curves on which both sides have the same vertices. Those curves leave the model and
-/// their edges become aligned inner edges; the other curves keep their order.
+/// Joins regions across curves on which both sides have the same vertices. Those curves leave the model; the
+/// other curves keep their order.
 ///
 /// \param inner     by curve: whether regions are joined across it; two edges lie on each of its pieces
 /// \param surfaces  of the joined regions; numbered as these are, by their first parts

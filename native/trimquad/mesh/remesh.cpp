@@ -169,10 +169,13 @@ bool makesChord(const WorkingMesh& work, VertexHandle v, VertexHandle to) {
   return false;
 }
 
+/// Whether moving v into `to` would join `to` with vertices too far away; those that it is joined with are no
+/// reason against it.
 bool makesLongEdge(const WorkingMesh& work, VertexHandle v, VertexHandle to) {
   for (auto n = work.mesh.cvv_begin(v); n.is_valid(); ++n)
-    if ((work.mesh.point(*n) - work.mesh.point(to)).norm() >
-        kLong * 0.5 * (work.size[n->idx()] + work.size[to.idx()]))
+    if (!work.mesh.find_halfedge(*n, to).is_valid() &&
+        (work.mesh.point(*n) - work.mesh.point(to)).norm() >
+            kLong * 0.5 * (work.size[n->idx()] + work.size[to.idx()]))
       return true;
   return false;
 }
@@ -194,19 +197,28 @@ void collapseShort(WorkingMesh& work) {
   }
 }
 
+/// The least quality that a collapse out of a bad triangle must leave. On a ridge, where normals say little
+/// and several slivers lie side by side, none worse than before: all of them have to go. A vertex inside a
+/// triangle leaves that one, which is as flat as those before.
+double leastQuality(const WorkingMesh& work, FaceHandle bad, VertexHandle v, VertexHandle to) {
+  if (!work.onRidge[v.idx()] && !work.onRidge[to.idx()]) return std::nextafter(work.quality(bad), 2);
+  return work.worstAround(v, work.mesh.point(v)) - (work.mesh.valence(v) == 3 ? kBad : 0);
+}
+
 /// Takes out folded triangles and slivers by whichever collapse leaves the best triangles, whatever the
 /// lengths.
 void collapseBad(WorkingMesh& work) {
   for (const auto f : work.mesh.faces()) {
     if (work.quality(f) >= kBad) continue;
     HalfedgeHandle best;
-    double quality = work.quality(f);
+    double quality = -2;
     for (auto side = work.mesh.cfh_begin(f); side.is_valid(); ++side)
       for (const HalfedgeHandle h :
            {HalfedgeHandle(*side), HalfedgeHandle(work.mesh.opposite_halfedge_handle(*side))}) {
         const auto v = work.mesh.from_vertex_handle(h), to = work.mesh.to_vertex_handle(h);
         if (work.isHeld(v) || makesChord(work, v, to)) continue;
-        if (const auto after = work.qualityAfterCollapse(h); after && *after > quality)
+        if (const auto after = work.qualityAfterCollapse(h);
+            after && *after > quality && *after >= leastQuality(work, f, v, to))
           best = h, quality = *after;
       }
     if (best.is_valid()) work.collapse(best);
@@ -237,8 +249,8 @@ void splitChords(WorkingMesh& work) {
 }  // namespace
 
 void remesh(Region& region, const Model& model, const std::vector<std::vector<double>>& division,
-            const Creases& creases, const RemeshOptions& options, const Progress& progress) {
-  WorkingMesh work(region, creases, options);
+            const RemeshOptions& options, const Progress& progress) {
+  WorkingMesh work(region, options);
   insertDivision(work, model, division);
   flipAll(work);
   int unwanted = removeUnwanted(work, false);

@@ -16,8 +16,8 @@ namespace trimquad {
 /// true surface; feature points stay vertices where they are; no triangle is degenerate; no inner edge joins
 /// two boundary vertices. Throws Error(Stage, "tessellate") where the boundary cannot be given the wanted
 /// vertices. Source: M. Botsch and L. Kobbelt, A Remeshing Approach to Multiresolution Modeling, SGP 2004.
-/// \param division see divideCurves \param creases stay edges, or become chains of edges
+/// \param division see divideCurves
 void remesh(Region& region, const Model& model, const std::vector<std::vector<double>>& division,
-            const Creases& creases, const RemeshOptions& options, const Progress& progress);
+            const RemeshOptions& options, const Progress& progress);
 
 }  // namespace trimquad

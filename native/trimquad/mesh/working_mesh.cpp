@@ -8,8 +8,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGradation = 0.4;  ///< growth of the wanted length per length
 constexpr int kGradationSweeps = 3;
+/// Least wanted length on a boundary that is an edge of the surface within the tolerance, by its own edges:
+/// much shorter ones beside them would make slivers.
+constexpr double kBesideRidge = 0.5;
 constexpr double kSmoothing = 0.8;    ///< share of the way to the neighbours' middle
 constexpr double kOffMiddle = 0.35;   ///< how far a split may be off the edge's middle, in edge lengths
 constexpr double kSplitLoss = 0.2;    ///< least share of the old quality that a split must leave
@@ -18,7 +20,7 @@ constexpr double kGoodEnough = 0.25;  ///< quality down to which smoothing may g
 
 }  // namespace
 
-WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const RemeshOptions& options)
+WorkingMesh::WorkingMesh(const Region& region, const RemeshOptions& options)
     : mesh(region.mesh),
       parameter(region.curveParameter),
       corner(region.corner),
@@ -27,13 +29,10 @@ WorkingMesh::WorkingMesh(const Region& region, const Creases& creases, const Rem
       edgeCurve(region.edgeCurve),
       surface_(*region.surface),
       options_(options),
-      creases_(creases),
-      onCrease_(mesh.n_vertices(), 0),
       settled_(mesh.n_edges(), 0) {
-  for (const auto& [a, b] : creases) onCrease_[a.idx()] = onCrease_[b.idx()] = 1;
   for (const auto v : mesh.vertices()) {
-    normal.push_back(onCrease_[v.idx()] ? Vector3d(0, 0, 0) : normalOnSheet(v));
-    curvatureSize.push_back(sizeAt(mesh.point(v)));
+    normal.push_back(normalOnSheet(v));
+    measureCurvature(mesh.point(v));
     if (corner[v.idx()]) fixed[v.idx()] = 1;
   }
   for (const auto v : region.featurePoints) {
@@ -53,19 +52,6 @@ Vector3d WorkingMesh::normalOnSheet(VertexHandle v) const {
   for (auto f = mesh.cvf_begin(v); f.is_valid(); ++f)
     sum += surface_.closest(mesh.calc_face_centroid(*f)).normal;
   return sum.norm() > 0 ? Vector3d(sum.normalized()) : nearest;
-}
-
-double WorkingMesh::sizeAt(const Vector3d& point) const {
-  const auto c = surface_.curvature(point);
-  const double k = std::max(std::abs(c.k1), std::abs(c.k2));
-  if (!(k > 0)) return options_.edgeLength;
-  // An edge of length l on a circle of curvature k is l^2 k / 8 away from it.
-  const double sag = std::sqrt(8 * options_.tolerance / k);
-  const double wanted = std::min(sag, kLargestTurn / k);
-  // Where even the shortest edge would cut off more than the tolerance, such as the lip of an inlet.
-  const double lower =
-      std::min(kShortestEdge * options_.edgeLength, std::max(sag, kTightestEdge * options_.edgeLength));
-  return std::clamp(wanted, lower, options_.edgeLength);
 }
 
 double WorkingMesh::quality(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& normal) {
@@ -104,15 +90,20 @@ bool WorkingMesh::isChord(EdgeHandle e) const {
          mesh.is_boundary(mesh.to_vertex_handle(h));
 }
 
+void WorkingMesh::measureCurvature(const Vector3d& point) {
+  const double k = largestCurvature(surface_, point);
+  curvatureSize.push_back(lengthByCurvature(k, options_));
+  onRidge.push_back(isSharp(k, options_));
+}
+
 VertexHandle WorkingMesh::addVertex(const Vector3d& point, const Vector3d& surfaceNormal) {
   normal.push_back(surfaceNormal);
-  curvatureSize.push_back(sizeAt(point));
+  measureCurvature(point);
   size.push_back(curvatureSize.back());
   parameter.push_back(0);
   corner.emplace_back();
   fixed.push_back(0);
   pinned.push_back(0);
-  onCrease_.push_back(0);
   return mesh.add_vertex(point);
 }
 
@@ -141,22 +132,10 @@ bool WorkingMesh::splitInner(EdgeHandle e, bool always) {
   const auto h = mesh.halfedge_handle(e, 0);
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const Vector3d middle = 0.5 * (mesh.point(a) + mesh.point(b));
-  if (isCrease(a, b)) {
-    const auto v = addVertex(surface_.closest(middle).point, Vector3d(0, 0, 0));
-    mesh.split(e, v);
-    edgeCurve.resize(mesh.n_edges());
-    disturb(v);
-    onCrease_[v.idx()] = 1;
-    creases_.erase(ordered(a, b));
-    creases_.insert(ordered(a, v));
-    creases_.insert(ordered(v, b));
-    return true;
-  }
   const auto foot = surface_.closestFacing(middle, normal[a.idx()] + normal[b.idx()]);
   const Vector3d away = foot.point - middle;
   const Vector3d facing = normal[a.idx()] + normal[b.idx()];
-  const bool between = away.norm() <= kOffMiddle * length(e) &&
-                       (facing.isZero() || foot.normal.dot(facing) > 0) &&
+  const bool between = away.norm() <= kOffMiddle * length(e) && foot.normal.dot(facing) > 0 &&
                        splitQuality(h, foot.point, foot.normal) >
                            kSplitLoss * std::min(quality(mesh.face_handle(h)),
                                                  quality(mesh.face_handle(mesh.opposite_halfedge_handle(h))));
@@ -222,7 +201,7 @@ bool WorkingMesh::isBetterFlipped(EdgeHandle e) const {
   const auto a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
   const auto c = mesh.to_vertex_handle(mesh.next_halfedge_handle(h)),
              d = mesh.to_vertex_handle(mesh.next_halfedge_handle(o));
-  if ((mesh.is_boundary(c) && mesh.is_boundary(d)) || isCrease(a, b)) return false;
+  if (mesh.is_boundary(c) && mesh.is_boundary(d)) return false;
   const double before = std::min(quality(mesh.face_handle(h)), quality(mesh.face_handle(o)));
   if (before > 0.99) return false;
   const Vector3d base = normal[c.idx()] + normal[d.idx()];
@@ -267,14 +246,26 @@ void WorkingMesh::smooth(VertexHandle v) {
 
 void WorkingMesh::updateSizes() {
   size = curvatureSize;
-  std::vector<double> sum(size.size(), 0);
+  std::vector<double> sum(size.size(), 0), least(size.size(), 0);
   for (const auto e : mesh.edges()) {
     if (!mesh.is_boundary(e)) continue;
     for (const int side : {0, 1})
       sum[mesh.to_vertex_handle(mesh.halfedge_handle(e, side)).idx()] += 0.5 * length(e);
   }
-  for (size_t v = 0; v < size.size(); ++v)
-    if (sum[v] > 0) size[v] = std::clamp(sum[v], kShortestEdge * options_.edgeLength, size[v]);
+  for (size_t v = 0; v < size.size(); ++v) {
+    if (!(sum[v] > 0)) continue;
+    size[v] = std::min(size[v], std::max(sum[v], kShortestEdge * options_.edgeLength));
+    if (onRidge[v]) least[v] = kBesideRidge * sum[v];
+  }
+  for (int sweep = 0; sweep < kGradationSweeps; ++sweep)
+    for (const auto e : mesh.edges()) {
+      const auto h = mesh.halfedge_handle(e, 0);
+      double &a = least[mesh.from_vertex_handle(h).idx()], &b = least[mesh.to_vertex_handle(h).idx()];
+      const double fall = kGradation * length(e);
+      a = std::max(a, b - fall);
+      b = std::max(b, a - fall);
+    }
+  for (size_t v = 0; v < size.size(); ++v) size[v] = std::max(size[v], least[v]);
   for (int sweep = 0; sweep < kGradationSweeps; ++sweep)
     for (const auto e : mesh.edges()) {
       const auto h = mesh.halfedge_handle(e, 0);

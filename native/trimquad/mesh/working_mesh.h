@@ -14,12 +14,13 @@ namespace trimquad {
 /// region's surface. Elements that went away stay in place, marked deleted, until `finish`.
 class WorkingMesh {
  public:
-  WorkingMesh(const Region& region, const Creases& creases, const RemeshOptions& options);
+  WorkingMesh(const Region& region, const RemeshOptions& options);
 
   SurfaceMesh mesh;
   /// Per vertex.
-  std::vector<Eigen::Vector3d> normal;  ///< of the true surface; zero on a crease, where there are two
+  std::vector<Eigen::Vector3d> normal;  ///< of the true surface
   std::vector<double> curvatureSize;    ///< longest edge that the curvature allows
+  std::vector<char> onRidge;            ///< the radius of curvature is below the tolerance
   std::vector<double> size;             ///< wanted edge length
   std::vector<double> parameter;        ///< on the curve, inside one
   std::vector<std::optional<CornerId>> corner;
@@ -28,9 +29,8 @@ class WorkingMesh {
   /// Per edge.
   std::vector<std::optional<CurveId>> edgeCurve;
 
-  /// Whether a vertex may move along the boundary at most: it is on the boundary, on a crease or a feature
-  /// point.
-  bool isHeld(VertexHandle v) const { return mesh.is_boundary(v) || onCrease_[v.idx()] || pinned[v.idx()]; }
+  /// Whether a vertex may move along the boundary at most: it is on the boundary or a feature point.
+  bool isHeld(VertexHandle v) const { return mesh.is_boundary(v) || pinned[v.idx()]; }
 
   /// 1 for an equilateral triangle facing the side of `normal`, 0 for a degenerate one, negative for a folded
   /// one.
@@ -71,6 +71,7 @@ class WorkingMesh {
   void finish(Region& region) const;
 
  private:
+  void measureCurvature(const Eigen::Vector3d& point);  ///< of the next vertex
   VertexHandle addVertex(const Eigen::Vector3d& point, const Eigen::Vector3d& surfaceNormal);
   /// To be called when a vertex or the triangles around it changed: their sides may be flipped again.
   void disturb(VertexHandle v);
@@ -80,20 +81,10 @@ class WorkingMesh {
                       const Eigen::Vector3d& pointNormal) const;
   /// The true normal at a vertex, on the sheet of its triangles where several sheets of the surface meet.
   Eigen::Vector3d normalOnSheet(VertexHandle v) const;
-  double sizeAt(const Eigen::Vector3d& point) const;
-
-  static std::pair<VertexHandle, VertexHandle> ordered(VertexHandle a, VertexHandle b) {
-    return std::minmax(a, b);
-  }
-  bool isCrease(VertexHandle a, VertexHandle b) const {
-    return onCrease_[a.idx()] && onCrease_[b.idx()] && creases_.count(ordered(a, b)) > 0;
-  }
 
   const TrueSurface& surface_;
   RemeshOptions options_;
-  Creases creases_;
-  std::vector<char> onCrease_;  ///< by vertex
-  std::vector<char> settled_;   ///< by edge: it is not to be flipped as its two triangles are
+  std::vector<char> settled_;  ///< by edge: it is not to be flipped as its two triangles are
 };
 
 }  // namespace trimquad

@@ -152,9 +152,11 @@ TEST(RegionParts, creasesAreWhereTheSurfaceBendsWithinAnEdge) {
     const Model whole =
         tessellated(leadingEdge(sharp ? 0.002 : 0.2), {.sharp = FeatureOptions::Sharp::Trim}, 0.04);
     ASSERT_EQ(whole.regions.size(), 1u);
+    EXPECT_TRUE(whole.regions[0].aligned.empty());
     const auto parts = regionParts(whole, 0, {.creases = true}, Progress());
     ASSERT_EQ(parts.has_value(), sharp);
     if (!sharp) continue;
+    for (const auto& part : parts->model.regions) EXPECT_FALSE(part.aligned.empty());
     EXPECT_EQ(parts->edges.size(), 1u);
     ASSERT_EQ(parts->model.regions.size(), 2u);
     // Upper and lower side.
@@ -164,6 +166,29 @@ TEST(RegionParts, creasesAreWhereTheSurfaceBendsWithinAnEdge) {
     EXPECT_NE(regionParts(model, 0, {}, Progress()).has_value(),
               regionParts(model, 1, {}, Progress()).has_value());  // the lower side is of two faces
   }
+}
+
+TEST(RegionParts, trianglesBesideCreasesAreNoSlivers) {
+  // At the tip the radius is below the tolerance, and far below the length of edges.
+  const Model whole = tessellated(leadingEdge(0.002));
+  ASSERT_EQ(whole.regions.size(), 1u);
+  const auto& mesh = whole.regions[0].mesh;
+  double worst = 1, onTip = 0;
+  for (const auto f : mesh.faces()) {
+    const auto h = mesh.halfedge_handle(f);
+    const Vector3d a = mesh.calc_edge_vector(h), b = mesh.calc_edge_vector(mesh.next_halfedge_handle(h));
+    const double sides = a.squaredNorm() + b.squaredNorm() + (a + b).squaredNorm();
+    // The ends are curves of the model, which are divided without regard to the surface.
+    const double z = mesh.calc_face_centroid(f).z();
+    if (z > 0.1 && z < 1.9) worst = std::min(worst, 2 * std::sqrt(3) * a.cross(b).norm() / sides);
+  }
+  for (const auto e : mesh.edges()) {
+    const auto h = mesh.halfedge_handle(e, 0);
+    const Vector3d a = mesh.point(mesh.from_vertex_handle(h)), b = mesh.point(mesh.to_vertex_handle(h));
+    if (std::max(std::abs(a.x()), std::abs(b.x())) < 1e-9) onTip += std::abs(a.z() - b.z());
+  }
+  EXPECT_GT(worst, 0.2);
+  EXPECT_NEAR(onTip, 2, 1e-9);
 }
 
 TEST(RegionParts, touchTheirNeighbours) {

@@ -34,7 +34,7 @@ TEST(WorkingMesh, noEdgeIsPassedOverThatIsBetterFlipped) {
   const RemeshOptions options{1, 0.1};
   for (int seed = 0; seed < 20; ++seed) {
     Region region = flatRegion(8, 7);
-    WorkingMesh work(region, {}, options);
+    WorkingMesh work(region, options);
     std::mt19937 random(seed);
     const auto below = [&](std::size_t n) { return int(random() % n); };
     for (int step = 0; step < 400; ++step) {
@@ -62,7 +62,7 @@ TEST(WorkingMesh, noEdgeIsPassedOverThatIsBetterFlipped) {
     }
     EXPECT_FALSE(flipSome(work));
     work.finish(region);
-    WorkingMesh fresh(region, {}, options);
+    WorkingMesh fresh(region, options);
     EXPECT_FALSE(flipSome(fresh)) << "seed " << seed;
   }
 }
