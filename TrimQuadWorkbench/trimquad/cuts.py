@@ -33,32 +33,42 @@ def cut_failed(result, progress) -> List[Tuple[int, object]]:
     Returns the numbers and the RegionResults of the parts, which are still to be converted. Only a CAD model with
     `features` trim is cut: otherwise its edges are to lie inside the surfaces.
     """
-    if result.source.kind != "cad" or result.options.features != "trim":
+    if not _may_cut(result):
         return []
     parts = {}
     for index, item in enumerate(result.regions):
-        if item.error is not None and item.error.kind == "stage" and item.cuts_left:
-            found = _parts(item, index, result, progress)
-            if found is not None:
-                parts[index] = found
+        if item.error is not None and item.error.kind == "stage":
+            while item.cuts_left and item.parts is None:
+                item.parts = _next_parts(item, index, result, progress)
+            if item.parts is not None:
+                parts[index] = item.parts
     return result.replace_by_parts(parts) if parts else []
 
 
-def _parts(item, index, result, progress):
-    """Those of the next cut, or None where there is none."""
-    while item.cuts_left:
-        way = CUTS[-item.cuts_left]
-        item.cuts_left -= 1
-        place = item.error.position if way == "place" else None
-        if way == "place" and place is None:
-            continue
-        try:
-            with progress.stage("cut", item.name) as native_progress:
-                parts = load().region_parts(result.model, index, place, way == "creases", native_progress)
-        except Error as error:
-            if error.kind == "cancelled":
-                raise
-            continue
-        if parts is not None:
-            return parts
-    return None
+def bends_sharply(item, result, progress):
+    """Whether a region can be cut where it bends sharply and that was not tried yet. If so, cut_failed() does it once the
+    region has an error."""
+    if not _may_cut(result) or item.cuts_left < len(CUTS):
+        return False
+    item.parts = _next_parts(item, result.regions.index(item), result, progress)
+    return item.parts is not None
+
+
+def _may_cut(result):
+    return result.source.kind == "cad" and result.options.features == "trim"
+
+
+def _next_parts(item, index, result, progress):
+    """Those of the next way of cutting, or None where it gives none."""
+    way = CUTS[-item.cuts_left]
+    item.cuts_left -= 1
+    place = item.error.position if way == "place" else None
+    if way == "place" and place is None:
+        return None
+    try:
+        with progress.stage("cut", item.name) as native_progress:
+            return load().region_parts(result.model, index, place, way == "creases", native_progress)
+    except Error as error:
+        if error.kind == "cancelled":
+            raise
+        return None

@@ -2,7 +2,7 @@
 import time
 
 from . import regions
-from .cuts import cut_failed
+from .cuts import bends_sharply, cut_failed
 from .error import Error, cancelled
 from .native import load
 
@@ -100,10 +100,14 @@ def _refit_faulty(result, progress):
 
 def _refit(item, charts, error, result, progress):
     """Fits a region again in the next of the ways there are, then over another map. Where there is none left, its error is
-    kept instead.
+    kept instead; and first of all where it is to be cut along edges where it bends sharply.
 
     charts: those whose faces are at fault; empty where the region's edges are, many of which small holes have
     """
+    if bends_sharply(item, result, progress):
+        item.fitted = None
+        item.error = error
+        return
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     try:

@@ -74,6 +74,7 @@ class RegionResult:
         self.cut_from = None
         self.fitted_closer = False
         self.cuts_left = len(CUTS)
+        self.parts = None  # of the cut that comes next, where it is known
 
     @property
     def has_creases(self):

@@ -116,3 +116,48 @@ def test_a_region_that_cannot_be_trimmed_is_cut(monkeypatch):
     result = converted()
     assert len(whole) == 1 and len(result.cuts) == 1 and not result.failed
     assert result.shape.isValid() and len(result.shape.Faces) == 8
+
+
+def leading_edge(radius):
+    """Upper and lower side of a leading edge, 1 deep and 2 long: a shell of two faces."""
+    import FreeCAD
+    import Part
+
+    height = math.sqrt(2 * radius)
+    sides = []
+    for sign in (1, -1):
+        curve = Part.BezierCurve()
+        curve.setPoles([FreeCAD.Vector(*p) for p in ((0, 0, 0), (0, sign * height / 2, 0), (1, sign * height, 0))])
+        sides.append(curve.toShape().extrude(FreeCAD.Vector(0, 0, 2)))
+    return Part.makeShell(sides)
+
+
+@pytest.mark.parametrize("radius, cut", ((0.002, True), (0.2, False)))
+def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, radius, cut):
+    native = joining.load()
+
+    def face_faults(spline, folded):
+        whole = len(spline.faces) == 1 and spline is first
+        return [["SelfIntersect"] if whole else [] for _ in spline.faces]
+
+    def trim_model(*arguments):
+        nonlocal first
+        model = native.trim_model(*arguments)
+        first = first or model
+        return model
+
+    first = None
+    stand_ins = {"face_faults": face_faults, "trim_model": trim_model}
+
+    class Native:
+        def __getattr__(self, name):
+            return stand_ins.get(name) or getattr(native, name)
+
+    monkeypatch.setattr(joining, "load", Native)
+    result = trimquad.convert(leading_edge(radius), trimquad.Options(quads=30, tolerance=0.04))
+    assert not result.failed
+    if cut:
+        assert len(result.cuts) == 1 and len(result.cuts[0].edges) == 1
+        assert [r.refits for r in result.regions] == [0, 0] and len(result.shape.Faces) == 2
+    else:
+        assert not result.cuts and [r.refits for r in result.regions] == [1]
