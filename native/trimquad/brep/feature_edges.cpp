@@ -177,14 +177,6 @@ std::vector<char> chosen(const CadModel& model, const Sharpness& edges,
   return result;
 }
 
-void dropCutCreases(const WeldedMesh& mesh, FeatureEdges& features) {
-  for (size_t s = 0; s < features.crease.size(); ++s) {
-    if (!features.crease[s]) continue;
-    const int e = *mesh.sides[s].cadEdge;
-    if (features.cut[e] && !features.inner[e]) features.crease[s] = 0;
-  }
-}
-
 /// Triangles must not reach across creases: their vertices are on these edges, the same on both sides.
 void openCreases(const WeldedMesh& mesh, FeatureEdges& features) {
   for (size_t s = 0; s < features.crease.size(); ++s) {
@@ -306,10 +298,13 @@ void cutAlong(FeatureEdges& features, const WeldedMesh& mesh, const std::vector<
     features.cut[e] = 1;
     features.inner[e] = 0;
   }
-  for (size_t s = 0; s < features.crease.size(); ++s)
-    if (features.crease[s] && features.cut[*mesh.sides[s].cadEdge] && !features.inner[*mesh.sides[s].cadEdge])
-      features.aligned[*mesh.sides[s].cadEdge] = 1;
-  dropCutCreases(mesh, features);
+  for (size_t s = 0; s < features.crease.size(); ++s) {
+    if (!features.crease[s]) continue;
+    const int e = *mesh.sides[s].cadEdge;
+    if (!features.cut[e] || features.inner[e]) continue;
+    features.aligned[e] = 1;
+    features.crease[s] = 0;
+  }
 }
 
 std::vector<char> featureVertices(const CadModel& model, const WeldedMesh& mesh,

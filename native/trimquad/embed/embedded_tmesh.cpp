@@ -71,9 +71,7 @@ void verifyLoop(const EmbeddedTMesh& embedded, const Occupation& occupied, Patch
 
 template <typename Status>
 int countOfKept(const Status& status) {
-  int count = 0;
-  for (const auto& s : status) count += !s.deleted();
-  return count;
+  return int(std::count_if(status.begin(), status.end(), [](const auto& s) { return !s.deleted(); }));
 }
 
 template <typename Item>

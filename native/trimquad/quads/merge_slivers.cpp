@@ -15,15 +15,19 @@ constexpr double kVanishing = 1e-6;
 /// Distance of a cell's corners from a line, as a fraction of its length, up to which they lie on it.
 constexpr double kStraight = 1e-9;
 
+bool isTrimmedPolygon(const QuadMesh::Cell& cell) {
+  return !cell.full && cell.loops.size() == 1 && cell.simple.empty();
+}
+
 bool isSliver(const QuadMesh::Cell& cell, double fraction) {
-  return !cell.full && cell.area < fraction && cell.loops.size() == 1 && cell.simple.empty();
+  return cell.area < fraction && isTrimmedPolygon(cell);
 }
 
 /// Whether a cell's corners lie on one line in space, on the boundary: this is straight there though the map
 /// bends it.
 bool isStraight(const CellMerge& cells, CellId id) {
   const auto& cell = cells[id];
-  if (cell.full || cell.loops.size() > 1 || !cell.simple.empty()) return false;
+  if (!isTrimmedPolygon(cell)) return false;
   const auto& loop = cell.loops[0];
   const Eigen::Vector3d origin = cells[loop[0]].position;
   Eigen::Vector3d line = Eigen::Vector3d::Zero();
