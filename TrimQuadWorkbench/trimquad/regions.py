@@ -23,7 +23,7 @@ class OtherMap(NamedTuple):
 
     behind_small_holes: bool = False  # it goes on there
     creases_rounded: bool = False  # it does not follow the sharp edges of a mesh
-    without_singularities: bool = False  # it has none, at the cost of distortion: one surface holds the region
+    singularities: str = "weighed"  # against distortion; "none": one surface holds the region; or those "of field"
 
 
 # The mean symmetric Dirichlet energy of a map without singularities up to which surfaces are fitted over it; 4 is an
@@ -32,14 +32,16 @@ MOST_DISTORTION = 10
 
 OWN_MAP = OtherMap()
 BEHIND_HOLES = OtherMap(behind_small_holes=True)
-WITHOUT_SINGULARITIES = OtherMap(without_singularities=True)
+WITHOUT_SINGULARITIES = OtherMap(singularities="none")
+WITH_SINGULARITIES = OtherMap(singularities="of field")
 # In the order in which they are tried.
 OTHER_MAPS = (
     OWN_MAP,
     BEHIND_HOLES,
     WITHOUT_SINGULARITIES,
+    WITH_SINGULARITIES,
     OtherMap(creases_rounded=True),
-    OtherMap(creases_rounded=True, without_singularities=True),
+    OtherMap(creases_rounded=True, singularities="none"),
     OtherMap(creases_rounded=True, behind_small_holes=True),
 )
 
@@ -64,7 +66,7 @@ class RegionResult:
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
         self.fill_holes = 0.0  # holes shorter than this are bridged
-        self.without_singularities = False  # only a map that has none will do
+        self.wanted_singularities = "weighed"  # which ones the map is to have, as OtherMap.singularities
         self.refits = self.field_edits = 0
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
         self.other_maps = []  # those that were tried
@@ -91,7 +93,7 @@ class RegionResult:
     @property
     def fitted_without_singularities(self):
         """Whether the map of the B-spline surfaces has no singularities, though that of the quads has."""
-        return self.fitted_from is not self and self.fitted_from.without_singularities
+        return self.fitted_from is not self and self.fitted_from.wanted_singularities == "none"
 
     @property
     def polygons(self):
@@ -229,8 +231,8 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
         item.region = item.mapped_region = copied
     else:
         item.mapped_region = native.copy_region(item.mapped_region)
-    if not item.singularities:
-        item.other_maps.append(WITHOUT_SINGULARITIES)  # as is its own
+    # As is its own.
+    item.other_maps.append(WITH_SINGULARITIES if item.singularities else WITHOUT_SINGULARITIES)
     for way in ways:
         if way in item.other_maps:
             continue
@@ -242,7 +244,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
         native.place_region(result.model, index, region)
         other = RegionResult(result.model.regions[index])
         other.edge_length, other.guidance = item.edge_length, item.guidance
-        other.without_singularities = way.without_singularities
+        other.wanted_singularities = way.singularities
         other.fill_holes = max(item.fill_holes, SMALL_HOLE * item.edge_length if way.behind_small_holes else 0)
         try:
             _bridge(other, index, result, progress)
@@ -250,8 +252,10 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
                 continue
             _map(other, index, result, progress)
             if not other.singularities:
-                item.other_maps.append(way._replace(without_singularities=True))
-            if way.without_singularities and other.seamless.counters["distortion_end"] > MOST_DISTORTION:
+                item.other_maps.append(way._replace(singularities="none"))
+                if way.singularities == "of field":
+                    continue
+            if way.singularities == "none" and other.seamless.counters["distortion_end"] > MOST_DISTORTION:
                 continue
             other.fitted = _run(other, progress, "fit", fit, other, result)
             if not takes(other.fitted):
@@ -306,7 +310,7 @@ def _map(item, index, result, progress):
     native = load()
     options = result.options
     seed = _run(item, progress, "seamless", native.seed, item.bridged, str(options.field), item.guidance,
-                options.field_weight, item.edge_length, item.without_singularities)
+                options.field_weight, item.edge_length, item.wanted_singularities)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     if seed.refined:
         # The model's region gets halved edges; the field and all maps are of these.

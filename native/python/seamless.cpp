@@ -55,7 +55,7 @@ void bindSeamless(py::module_& m) {
   m.def(
       "seed",
       [](const Region& region, const std::string& follow, std::optional<FieldGuidance> guidance,
-         std::optional<double> weight, double edgeLength, bool withoutSingularities,
+         std::optional<double> weight, double edgeLength, const std::string& singularities,
          const Progress& progress) {
         SeedOptions options;
         options.follow = guidance             ? SeedOptions::Follow::Given
@@ -64,12 +64,15 @@ void bindSeamless(py::module_& m) {
         options.guidance = std::move(guidance);
         options.weight = weight;
         options.edgeLength = edgeLength;
-        options.withoutSingularities = withoutSingularities;
+        options.singularities = singularities == "none"       ? SeedOptions::Singularities::None
+                                : singularities == "of field" ? SeedOptions::Singularities::OfField
+                                                              : SeedOptions::Singularities::Weighed;
         return seed(region, options, progress);
       },
       py::arg("region"), py::arg("follow"), py::arg("guidance"), py::arg("weight"), py::arg("edge_length"),
-      py::arg("without_singularities"), py::arg("progress"), Released(),
-      "follow: 'curvature' or 'smooth', where there is no `guidance`; weight: how closely, 0 to 1, or None");
+      py::arg("singularities"), py::arg("progress"), Released(),
+      "follow: 'curvature' or 'smooth', where there is no `guidance`; weight: how closely, 0 to 1, or None; "
+      "singularities: 'weighed' against distortion, 'none', or those 'of field'");
   m.def(
       "place_refined",
       [](Model& model, int index, const Region& bridged, const Seed& seed,

@@ -59,6 +59,25 @@ def test_one_surface_over_too_distorted_a_map_is_not_looked_for(monkeypatch):
     assert waiting == [] and region.fitted_from is region
 
 
+def test_several_surfaces_around_singularities_are_tried_where_the_quads_have_none_and_one_surface_does_not_fit(monkeypatch):
+    regions = sys.modules["trimquad.regions"]
+    fit = regions.fit
+
+    def only_several(item, *rest, **options):
+        if not item.singularities:
+            raise trimquad.Error("stage", "fit", "the tolerance cannot be met", item.name)
+        return fit(item, *rest, **options)
+
+    monkeypatch.setattr(regions, "fit", only_several)
+    result = trimquad.convert(cap(1.4), trimquad.Options(quads=300))
+    (region,) = result.regions
+    assert region.singularities == [] and len(region.fitted_from.singularities) > 0
+    assert region.error is None and not region.fitted_without_singularities
+    assert len(result.shape.Faces) > 1
+    result.shape.check(True)
+    assert result.report["regions"][0]["quads"]["irregular_vertices"] == 0
+
+
 def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tried(monkeypatch):
     joining = sys.modules["trimquad.joining"]
     native = joining.load()

@@ -79,7 +79,8 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
   if (options.follow != SeedOptions::Follow::Smooth && reaches.back() > 0) reaches.push_back(0);
 
   // Maps without singularities are worth some distortion, and are the last resort where all others fail.
-  const bool mayDoWithout = !(given && weight > kCurvatureWeight) && region.aligned.empty() &&
+  using Singularities = SeedOptions::Singularities;
+  const bool mayDoWithout = options.singularities != Singularities::OfField && !(given && weight > kCurvatureWeight) && region.aligned.empty() &&
                             region.featurePoints.empty() && admitsNoSingularity(region.mesh);
   const auto withoutSingularities = [&] {
     return singularityFreeField(region.mesh, guidance, reaches.front(), progress);
@@ -92,12 +93,12 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
           tryField(region, options.edgeLength, withoutSingularities, effort, budget, progress, result);
       if (!error)
         without = result;
-      else if (options.withoutSingularities)
+      else if (options.singularities == Singularities::None)
         first = error;
     }
     return without && without->map.counters.distortionEnd <= kLittleDistortion;
   };
-  if (options.withoutSingularities) {
+  if (options.singularities == Singularities::None) {
     tryWithout(Effort::Full);
     if (without) return *without;
     throw first.value_or(stageError("field", "the region has no map without singularities", region.name));

@@ -22,8 +22,12 @@ struct SeedOptions {
   /// 0.1 for the curvature, 1 for what is given.
   std::optional<double> weight;
   double edgeLength = 1;  ///< of a quad, model units
-  /// Only a map without singularities is wanted, however much distortion it has.
-  bool withoutSingularities = false;
+  enum class Singularities {
+    Weighed,  ///< against the distortion of a map without them
+    None,     ///< only a map without them is wanted, however much distortion it has
+    OfField   ///< those of the smoothest field
+  };
+  Singularities singularities = Singularities::Weighed;
 };
 
 /// A field and the seamless map that follows it: what the rest of the pipeline starts from. (The input of the
@@ -38,7 +42,7 @@ struct Seed {
 
 /// A map without singularities where the region has one of little distortion, or of less than with them, and
 /// nothing is to be followed more closely than is usual for the curvature; else the map of the smoothest
-/// field. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
+/// field. SeedOptions::singularities may ask for either. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
 /// to one that follows nothing but the aligned edges. Throws Error(Stage) of the first field where none has a
 /// map, and where the region has no map without singularities though only that is wanted: it is not of genus
 /// 0 with a boundary, or is to follow edges, points or given directions.

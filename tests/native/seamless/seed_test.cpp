@@ -322,7 +322,7 @@ TEST(Seed, aMapWithoutSingularitiesIsThereWhereItIsAskedForAndCanBe) {
     return std::count_if(s.field.index.begin(), s.field.index.end(), [](int i) { return i != 0; });
   };
   EXPECT_GT(singularities(seed(deep, options, Progress())), 0);
-  options.withoutSingularities = true;
+  options.singularities = SeedOptions::Singularities::None;
   const Seed without = seed(deep, options, Progress());
   check(deep, without);
   EXPECT_EQ(singularities(without), 0);
