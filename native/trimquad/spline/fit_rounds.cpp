@@ -46,6 +46,10 @@ constexpr int kPatience = 4;
 /// charts, or noise, which knots without end would follow.
 constexpr int kPatienceFar = 1;
 constexpr double kFar = 5;
+/// Several surfaces with so many poles are to be within so many tolerances: what asks for that many is noise,
+/// or creases across charts, and the rest of the way takes many times as long.
+constexpr int kManyPoles = 40000;
+constexpr double kNearWithMany = 1.5;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
 /// Part of the samples at which the surface may be turned over in folds within what is enough, where no
@@ -449,7 +453,8 @@ void FitRounds::refine() {
   atRefinement_ = best_;
   if (idle_ > 0) giveWay();
   const bool far = policy_.several && best_ > kFar * tolerance_;
-  if (idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > policy_.maxPoles)
+  const bool hopeless = policy_.several && poles() > kManyPoles && best_ > kNearWithMany * tolerance_;
+  if (hopeless || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > policy_.maxPoles)
     throw unreachable();
 }
 

@@ -131,9 +131,11 @@ PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSid
   const auto& feet = sampled.foot[sideIndex];
   const EndPull start(*side.sheet, feet.front(), side.start, tolerance),
       end(*side.sheet, feet.back(), side.end, tolerance);
-  const double first = sampled.s.front(), last = sampled.s.back();
+  // Of the sampled curve, by its parameter: those of the samples slide along the fitted one.
+  const double length = sampled.s.back() - sampled.s.front();
   const auto sample = [&](double s, double t, const Eigen::Vector3d& p, const Eigen::Vector2d& foot) {
-    const Eigen::Vector2d x = foot + start.at(s - first, last - first) + end.at(last - s, last - first);
+    const double from = sampled.lengthAt(t) - sampled.s.front();
+    const Eigen::Vector2d x = foot + start.at(from, length) + end.at(length - from, length);
     const double off = (side.sheet->jet(foot).s - p).norm();
     const double allowed = std::max(tolerance, std::sqrt(std::max(0.0, inSpace * inSpace - off * off)));
     return CurveSample<2>{s, t, x, metric(*side.sheet, x) * (tolerance / allowed)};
@@ -153,7 +155,46 @@ PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSid
   });
 }
 
+/// The samples' feet on a side's sheet. Where the sheet bends sharply a point has several, and which one is
+/// reached depends on where the way to it starts: at the map's parameter of the point, or at a neighbour's
+/// foot. The nearest one counts.
+std::vector<Eigen::Vector2d> feetOn(const SheetSide& side, const SampledCurve& sampled) {
+  const auto& run = *side.run;
+  std::vector<Eigen::Vector2d> ofMap, feet;
+  std::vector<double> off;
+  std::size_t at = 0;
+  const auto tryFrom = [&](std::size_t i, const Eigen::Vector2d& guess) {
+    const Eigen::Vector2d foot = side.sheet->footPoint(sampled.point[i], guess);
+    const double distance = (side.sheet->jet(foot).s - sampled.point[i]).norm();
+    if (!(distance < off[i])) return;
+    feet[i] = foot;
+    off[i] = distance;
+  };
+  const auto tryBeside = [&](std::size_t i, std::size_t beside) {
+    // A foot that is the nearest to rounding is not looked for again.
+    if (off[i] > kComposedError) tryFrom(i, feet[beside] + ofMap[i] - ofMap[beside]);
+  };
+  for (std::size_t i = 0; i < sampled.t.size(); ++i) {
+    while (at + 2 < run.t.size() && run.t[at + 1] < sampled.t[i]) ++at;
+    const double x = std::clamp((sampled.t[i] - run.t[at]) / (run.t[at + 1] - run.t[at]), 0.0, 1.0);
+    ofMap.push_back((1 - x) * run.uv[at] + x * run.uv[at + 1]);
+    feet.push_back(ofMap.back());
+    off.push_back(HUGE_VAL);
+    tryFrom(i, ofMap[i]);
+    if (i > 0) tryBeside(i, i - 1);
+  }
+  for (std::size_t i = feet.size(); i-- > 1;) tryBeside(i - 1, i);
+  return feet;
+}
+
 }  // namespace
+
+double SampledCurve::lengthAt(double at) const {
+  const auto next = std::clamp(std::lower_bound(t.begin(), t.end(), at), t.begin() + 1, t.end() - 1);
+  const std::size_t i = next - t.begin();
+  const double x = std::clamp((at - t[i - 1]) / (t[i] - t[i - 1]), 0.0, 1.0);
+  return (1 - x) * s[i - 1] + x * s[i];
+}
 
 SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& sides, double reach) {
   SampledCurve sampled{&curve, {}, {}, {}, {}};
@@ -175,20 +216,12 @@ SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& 
     sampled.point.push_back(p);
   }
   for (const auto& side : sides) {
-    auto& feet = sampled.foot.emplace_back();
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < sampled.t.size(); ++i) {
-      const auto& run = *side.run;
-      while (at + 2 < run.t.size() && run.t[at + 1] < sampled.t[i]) ++at;
-      const double x = std::clamp((sampled.t[i] - run.t[at]) / (run.t[at + 1] - run.t[at]), 0.0, 1.0);
-      const Eigen::Vector2d guess = (1 - x) * run.uv[at] + x * run.uv[at + 1];
-      feet.push_back(side.sheet->footPoint(sampled.point[i], guess));
-      const double distance = (side.sheet->jet(feet.back()).s - sampled.point[i]).norm();
-      if (distance > reach)
+    auto& feet = sampled.foot.emplace_back(feetOn(side, sampled));
+    for (std::size_t i = 0; i < feet.size(); ++i)
+      if ((side.sheet->jet(feet[i]).s - sampled.point[i]).norm() > reach)
         throw stageError("fit",
                          "the fitted surface misses the boundary; use a smaller tolerance or edge length",
                          side.region + ", " + curve.name, sampled.point[i]);
-    }
   }
   return sampled;
 }

@@ -29,6 +29,9 @@ struct SampledCurve {
   std::vector<double> t, s;  ///< the curve's own parameter; chord length from the start
   std::vector<Eigen::Vector3d> point;
   std::vector<std::vector<Eigen::Vector2d>> foot;  ///< by side, by sample
+
+  /// Chord length from the start to the curve's point at parameter `at`.
+  double lengthAt(double at) const;
 };
 
 /// Samples between all neighbouring boundary vertices. Throws Error(Stage, "fit") where a sheet is further

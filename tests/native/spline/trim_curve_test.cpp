@@ -1,0 +1,81 @@
+#include "trimquad/spline/trim_curve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/trim_samples.h"
+#include "trimquad/mesh/polyline_curve.h"
+
+namespace trimquad {
+namespace {
+
+using namespace test;
+
+/// A curve on a sheet, and where the map has its stations.
+struct CurveOnSheet {
+  Sheet sheet;
+  ModelCurve curve;
+  BoundaryRun run{};
+
+  CurveOnSheet(SplineSurface surface, const std::vector<Eigen::Vector3d>& points) : sheet{std::move(surface), {}, 0} {
+    auto chain = std::make_shared<PolylineCurve>(points);
+    run.points = points;
+    run.t = chain->parameters();
+    curve = {chain, CornerId{0}, CornerId{1}, "Edge1"};
+  }
+
+  SheetSide side() const { return {&sheet, &run, "region 1", run.uv.front(), run.uv.back()}; }
+};
+
+TEST(TrimCurve, IsLedToACornerThatLiesOffItsEndInBothDirections) {
+  const double scale = 28, length = 9.2;
+  for (const double off : {0.03, 0.07, 0.2, 0.6}) {
+    CurveOnSheet c(interpolated([&](double u, double v) { return Eigen::Vector3d(scale * u, scale * v, 0); },
+                                -1, 1, 4, -1, 1, 4),
+                   {{0, 0, 0}, {length / 6, 0, 0}, {length, 0, 0}});
+    for (const auto& p : c.run.points) c.run.uv.push_back(p.head<2>() / scale);
+    auto side = c.side();
+    const auto sampled = sampleCurve(c.curve, {side}, 1);
+    side.end += Eigen::Vector2d(-3 * off, off) / scale;
+    const double closeness = 0.0256;
+    const auto pieces = freeEdge(sampled, side, {closeness, closeness}, {});
+    ASSERT_EQ(pieces.size(), 1u) << off;
+    EXPECT_LT((pieces[0].curve.poles.back() - Eigen::Vector3d(length - 3 * off, off, 0)).norm(), 1e-9) << off;
+    constexpr int kSamples = 1000;
+    for (int i = 0; i <= kSamples; ++i) {
+      const auto p = pieces[0].curve.point(length * i / kSamples);
+      EXPECT_LT(std::abs(p[1]), off + closeness) << off;
+      if (p[0] < length / 2) {
+        EXPECT_LT(std::abs(p[1]), closeness) << off;
+      }
+    }
+    EXPECT_LT(pieces[0].curve.knots.size(), 300u) << off;
+  }
+}
+
+TEST(TrimCurve, FollowsTheNearestFeetWhereTheMapIsFarFromThem) {
+  const auto wave = [](double u, double v) { return Eigen::Vector3d(u, v, 0.6 * std::sin(3 * u)); };
+  const auto surface = interpolated(wave, -3, 9, 120, -1, 1, 4);
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector2d> uv;
+  constexpr int kStations = 60;
+  for (int i = 0; i <= kStations; ++i) {
+    const double u = 6.0 * i / kStations;
+    points.push_back(wave(u, 0));
+    // In the middle the map is most of a wave off.
+    uv.push_back({u + 1.5 * std::pow(std::sin(M_PI * u / 6), 2), 0});
+  }
+  CurveOnSheet c(surface, points);
+  c.run.uv = uv;
+  const auto sampled = sampleCurve(c.curve, {c.side()}, 1);
+  for (std::size_t i = 0; i < sampled.s.size(); ++i) {
+    const auto& p = sampled.point[i];
+    // Between stations the chain is off the surface by its sagitta.
+    EXPECT_LT((c.sheet.jet(sampled.foot[0][i]).s - p).norm(), 0.01) << p.transpose();
+    EXPECT_LT(std::abs(sampled.foot[0][i][0] - p[0]), 0.02) << p.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace trimquad
