@@ -97,7 +97,7 @@ class LayoutFit : public FitRounds {
   int charts() const override { return int(space_.charts.size()); }
   const SplineSpace& space(int chart) const override { return space_.charts[chart]; }
   std::vector<SurfaceSample> makeSamples(bool control) override {
-    auto samples = source_.make(space_, control, progress_);
+    auto samples = source_.make(space_, control, threads_, progress_);
     if (!control) space_.alignTangents(dataOf(samples, std::vector<double>(samples.size(), 1)));
     return samples;
   }

@@ -107,7 +107,7 @@ class SurfaceFit : public FitRounds {
   int charts() const override { return 1; }
   const SplineSpace& space(int) const override { return space_; }
   std::vector<SurfaceSample> makeSamples(bool control) override {
-    return source_.make(space_, control, progress_);
+    return source_.make(space_, control, threads_, progress_);
   }
   const std::vector<std::array<int, 3>>& cells() const override { return source_.cells(); }
   std::optional<std::vector<SplineSurface>> leastSquares(

@@ -182,15 +182,10 @@ SurfaceSample LayoutSamples::sample(FaceHandle f, const Eigen::Vector3d& barycen
     s.normal = vertexNormal_[vertex->idx()];
     return s;
   }
-  if (region_.surface) {
-    const auto foot = region_.surface->closestFacing(s.point, s.normal);
-    s.point = foot.point;
-    s.normal = foot.normal;
-  }
   return s;
 }
 
-std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool control,
+std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool control, int threads,
                                                const Progress& progress) {
   const auto& mesh = map_.mesh;
   const int across = kSamplesAcrossSpan + (control ? 1 : 0);
@@ -210,6 +205,11 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
     }
   }
   const int first = int(samples.size());
+  std::vector<int> onTriangles;
+  const auto add = [&](FaceHandle f, const Eigen::Vector3d& barycentric) {
+    if (barycentric.maxCoeff() < 1) onTriangles.push_back(int(samples.size()));
+    samples.push_back(sample(f, barycentric));
+  };
   std::vector<std::array<int, 3>> lattice;
   for (const auto f : mesh.faces()) {
     if (f.idx() % 256 == 0) progress.check();
@@ -221,7 +221,7 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
         const Eigen::Vector2d x = at(f, point.barycentric);
         const auto& piece = layout_.pieceAt(f, x);
         if (piece.chart != chart || piece.toChart != toChart) continue;
-        samples.push_back(sample(f, point.barycentric));
+        add(f, point.barycentric);
         samples.back().weight = (control ? 1 : 1 - kVertexShare) * point.area;
         lattice.push_back({2 * chart + fine, point.index[0], point.index[1]});
       }
@@ -242,11 +242,12 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
         Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
         barycentric[(k + 1) % 3] = (i + 0.5) / parts;
         barycentric[k] = 1 - barycentric[(k + 1) % 3];
-        samples.push_back(sample(f, barycentric));
+        add(f, barycentric);
         samples.back().weight = kBoundaryStrip * (c[(k + 1) % 3] - c[k]).norm() / parts;
       }
     }
   }
+  moveOntoTrueSurface(region_, onTriangles, samples, threads, progress);
   return samples;
 }
 

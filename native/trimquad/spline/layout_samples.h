@@ -19,7 +19,8 @@ class LayoutSamples {
 
   /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary and on both sides of
   /// aligned lines. `control` samples lie at other places and are denser.
-  std::vector<SurfaceSample> make(const JoinedSpace& space, bool control, const Progress& progress);
+  std::vector<SurfaceSample> make(const JoinedSpace& space, bool control, int threads,
+                                  const Progress& progress);
   /// Of the samples made last: small triangles between samples of one chart, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
 

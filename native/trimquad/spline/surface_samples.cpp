@@ -2,10 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "trimquad/base/parallel.h"
 #include "trimquad/spline/knot_lattice.h"
 
 namespace trimquad {
+
+void moveOntoTrueSurface(const Region& region, const std::vector<int>& chosen,
+                         std::vector<SurfaceSample>& samples, int threads, const Progress& progress) {
+  if (!region.surface) return;
+  parallelParts(int(chosen.size()), threads, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      if (i % 1024 == 0) progress.check();
+      SurfaceSample& s = samples[chosen[i]];
+      const auto foot = region.surface->closestFacing(s.point, s.normal);
+      s.point = foot.point;
+      s.normal = foot.normal;
+    }
+  });
+}
+
 SurfaceSamples::SurfaceSamples(const Region& region, const GridMap& map, const Chart& chart, double seam,
                                const Progress& progress)
     : region_(region), mesh_(map.mesh), chart_(chart), seam_(seam) {
@@ -79,11 +96,6 @@ SurfaceSample SurfaceSamples::sample(HalfedgeHandle h, const Eigen::Vector3d& ba
   }
   s.parameter = wrapped(s.parameter);
   s.normal = s.meshNormal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
-  if (region_.surface) {
-    const auto foot = region_.surface->closestFacing(s.point, s.normal);
-    s.point = foot.point;
-    s.normal = foot.normal;
-  }
   return s;
 }
 
@@ -93,7 +105,7 @@ double SurfaceSamples::areaOf(FaceHandle f) const {
   return 0.5 * (a.x() * b.y() - a.y() * b.x());
 }
 
-std::vector<SurfaceSample> SurfaceSamples::make(const SplineSpace& space, bool control,
+std::vector<SurfaceSample> SurfaceSamples::make(const SplineSpace& space, bool control, int threads,
                                                 const Progress& progress) {
   const int across = control ? kControlsAcrossSpan : kSamplesAcrossSpan;
   std::vector<SurfaceSample> samples;
@@ -129,6 +141,9 @@ std::vector<SurfaceSample> SurfaceSamples::make(const SplineSpace& space, bool c
       samples.back().weight = kBoundaryStrip * (c[1] - c[0]).norm() / parts;
     }
   }
+  std::vector<int> onTriangles(samples.size() - first);
+  std::iota(onTriangles.begin(), onTriangles.end(), first);
+  moveOntoTrueSurface(region_, onTriangles, samples, threads, progress);
   return samples;
 }
 

@@ -38,6 +38,11 @@ struct SurfaceSample {
   bool agrees(const Eigen::Vector3d& n) const { return n.dot(normal) > 0 || n.dot(meshNormal) > 0; }
 };
 
+/// Moves those of the samples that lie on the region's triangles onto its true surface, if it has one; their
+/// normals become that one's. \param chosen indices of samples
+void moveOntoTrueSurface(const Region& region, const std::vector<int>& chosen,
+                         std::vector<SurfaceSample>& samples, int threads, const Progress& progress);
+
 /// Samples of a region, dense enough for a spline space everywhere: the mesh vertices, points inside the
 /// triangles and on the boundary, all moved onto the true surface where there is one.
 class SurfaceSamples {
@@ -48,7 +53,8 @@ class SurfaceSamples {
 
   /// The mesh's vertices, sixteen to a knot rectangle, and as dense on the boundary, with the chart's
   /// parameters. `control` samples lie at other places and are denser.
-  std::vector<SurfaceSample> make(const SplineSpace& space, bool control, const Progress& progress);
+  std::vector<SurfaceSample> make(const SplineSpace& space, bool control, int threads,
+                                  const Progress& progress);
   /// Of the samples made last: small triangles between samples, to see how a residual varies.
   const std::vector<std::array<int, 3>>& cells() const { return cells_; }
 

@@ -156,7 +156,7 @@ ChartDeviation deviationFrom(const SplineSurface& surface, const Region& region,
   space.u.breaks.assign(surface.knotsU.begin() + surface.degreeU, surface.knotsU.end() - surface.degreeU);
   space.v.breaks.assign(surface.knotsV.begin() + surface.degreeV, surface.knotsV.end() - surface.degreeV);
   SurfaceSamples source(region, map, fitted.chart, surface.firstU(), progress);
-  auto samples = source.make(space, true, progress);
+  auto samples = source.make(space, true, 1, progress);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i % 1024 == 0) progress.check();
     auto& s = samples[i];
