@@ -29,7 +29,7 @@ class Mapped:
         self.model = self.fresh_model()
         if len(self.model.regions) != 1:
             raise Error("input", "read", f"{path}: {len(self.model.regions)} components; one is wanted")
-        seed = load().seed(self.model.regions[0], "curvature", None, None, edge_length, False, self.progress)
+        seed = load().seed(self.model.regions[0], "curvature", None, None, edge_length, "weighed", self.progress)
         self.field, self.map = seed.field, seed.map
         if seed.refined:
             load().place_refined(self.model, 0, self.model.regions[0], seed, None)

@@ -46,6 +46,8 @@ constexpr int kPatience = 4;
 /// charts, or noise, which knots without end would follow.
 constexpr int kPatienceFar = 1;
 constexpr double kFar = 5;
+/// With so few poles that says nothing yet.
+constexpr int kFewPoles = 1000;
 /// Several surfaces with so many poles are to be within so many tolerances: what asks for that many is noise,
 /// or creases across charts, and the rest of the way takes many times as long.
 constexpr int kManyPoles = 40000;
@@ -452,7 +454,7 @@ void FitRounds::refine() {
   thorough_ = stalled();
   atRefinement_ = best_;
   if (idle_ > 0) giveWay();
-  const bool far = policy_.several && best_ > kFar * tolerance_;
+  const bool far = policy_.several && best_ > kFar * tolerance_ && poles() > kFewPoles;
   const bool hopeless = policy_.several && poles() > kManyPoles && best_ > kNearWithMany * tolerance_;
   if (hopeless || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > policy_.maxPoles)
     throw unreachable();

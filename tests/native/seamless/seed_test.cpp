@@ -327,6 +327,15 @@ TEST(Seed, aMapWithoutSingularitiesIsThereWhereItIsAskedForAndCanBe) {
   check(deep, without);
   EXPECT_EQ(singularities(without), 0);
   EXPECT_GT(without.map.counters.distortionEnd, 4.5);
+  // Less of a dome has none, but those of its field can be had.
+  const Region shallow = sample::region(sample::sheet(30, 30, sample::dome(1.4)));
+  options.singularities = SeedOptions::Singularities::Weighed;
+  EXPECT_EQ(singularities(seed(shallow, options, Progress())), 0);
+  options.singularities = SeedOptions::Singularities::OfField;
+  const Seed ofField = seed(shallow, options, Progress());
+  check(shallow, ofField);
+  EXPECT_GT(singularities(ofField), 0);
+  options.singularities = SeedOptions::Singularities::None;
   // Closed, or with an edge to be followed.
   EXPECT_THROW(seed(sample::region(sample::sphere(8)), options, Progress()), Error);
   Region aligned = deep;

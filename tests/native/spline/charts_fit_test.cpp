@@ -88,6 +88,22 @@ TEST(ChartsFit, surfacesThatStayFarFromNoiseGiveUpBeforeTheyFollowIt) {
   }
 }
 
+TEST(ChartsFit, aNarrowBumpIsReachedThoughTheFirstKnotsBringLittle) {
+  auto sheet = wavySheet(31);
+  sheet.surface = nullptr;
+  sheet.columns = sheet.rows = 199;
+  sheet.point = [](double u, double v) -> Eigen::Vector3d {
+    const double x = u - 20.6, y = v - 9.3;
+    return {u, v, 1.5 * std::exp(-4 * (x * x + y * y))};
+  };
+  sheet.build();
+  const double tolerance = 0.05;
+  const auto fitted =
+      fitSurface(sheet.region, sheet.map, {.tolerance = tolerance, .bisections = {{0}}}, Progress());
+  EXPECT_EQ(fitted.surfaces.size(), 2u);
+  EXPECT_LE(fitted.maxDeviation, tolerance);
+}
+
 /// Mean of the thin-plate energy's density.
 double bending(const SplineSurface& s) {
   constexpr int n = 200;
