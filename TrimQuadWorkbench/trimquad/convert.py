@@ -218,6 +218,11 @@ def _warn_of_regions(result):
                 f"region '{item.name}': the B-spline surfaces go on behind {item.holes_bridged_to_fit} small holes, which the "
                 "quads do not"
             )
+        if item.fitted_around_singularities:
+            result.warnings.append(
+                f"region '{item.name}': no single B-spline surface fits, there are several around "
+                f"{len(item.fitted_from.singularities)} irregular vertices, which the quads do not have"
+            )
         if item.fitted is not None and item.fitted.folded:
             place = ", ".join(f"{x:.6g}" for x in item.fitted.folded[0])
             result.warnings.append(

@@ -96,6 +96,11 @@ class RegionResult:
         return self.fitted_from is not self and self.fitted_from.wanted_singularities == "none"
 
     @property
+    def fitted_around_singularities(self):
+        """Whether the map of the B-spline surfaces has singularities, though that of the quads has none."""
+        return self.fitted_from is not self and self.fitted_from.wanted_singularities == "of field"
+
+    @property
     def polygons(self):
         """The quads as Polygons, or None."""
         return None if self.quads is None else Polygons.from_obj(self.quads.to_obj())

@@ -76,6 +76,7 @@ def test_several_surfaces_around_singularities_are_tried_where_the_quads_have_no
     assert len(result.shape.Faces) > 1
     result.shape.check(True)
     assert result.report["regions"][0]["quads"]["irregular_vertices"] == 0
+    assert any("no single B-spline surface fits" in w for w in result.warnings)
 
 
 def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tried(monkeypatch):
