@@ -59,7 +59,7 @@ def test_one_surface_over_too_distorted_a_map_is_not_looked_for(monkeypatch):
     assert waiting == [] and region.fitted_from is region
 
 
-def test_several_surfaces_around_singularities_are_tried_where_the_quads_have_none_and_one_surface_does_not_fit(monkeypatch):
+def test_where_one_surface_does_not_fit_several_around_singularities_are_tried(monkeypatch):
     regions = sys.modules["trimquad.regions"]
     fit = regions.fit
 

@@ -80,7 +80,8 @@ Seed seed(const Region& region, const SeedOptions& options, const Progress& prog
 
   // Maps without singularities are worth some distortion, and are the last resort where all others fail.
   using Singularities = SeedOptions::Singularities;
-  const bool mayDoWithout = options.singularities != Singularities::OfField && !(given && weight > kCurvatureWeight) && region.aligned.empty() &&
+  const bool mayDoWithout = options.singularities != Singularities::OfField &&
+                            !(given && weight > kCurvatureWeight) && region.aligned.empty() &&
                             region.featurePoints.empty() && admitsNoSingularity(region.mesh);
   const auto withoutSingularities = [&] {
     return singularityFreeField(region.mesh, guidance, reaches.front(), progress);

@@ -42,10 +42,11 @@ struct Seed {
 
 /// A map without singularities where the region has one of little distortion, or of less than with them, and
 /// nothing is to be followed more closely than is usual for the curvature; else the map of the smoothest
-/// field. SeedOptions::singularities may ask for either. Where a field has no locally injective map, smoother ones with fewer singularities are tried, down
-/// to one that follows nothing but the aligned edges. Throws Error(Stage) of the first field where none has a
-/// map, and where the region has no map without singularities though only that is wanted: it is not of genus
-/// 0 with a boundary, or is to follow edges, points or given directions.
+/// field. SeedOptions::singularities may ask for either. Where a field has no locally injective map, smoother
+/// ones with fewer singularities are tried, down to one that follows nothing but the aligned edges. Throws
+/// Error(Stage) of the first field where none has a map, and where the region has no map without
+/// singularities though only that is wanted: it is not of genus 0 with a boundary, or is to follow edges,
+/// points or given directions.
 Seed seed(const Region& region, const SeedOptions& options, const Progress& progress);
 
 }  // namespace trimquad

@@ -21,6 +21,19 @@ Eigen::Matrix<double, 3, 2> metric(const Sheet& sheet, const Eigen::Vector2d& x)
   return m;
 }
 
+/// A value's place among ascending ones: between number `left` and the next, this part of the way.
+struct Place {
+  std::size_t left;
+  double part;
+};
+
+Place placeAmong(const std::vector<double>& ascending, double x) {
+  const auto next = std::clamp(std::lower_bound(ascending.begin(), ascending.end(), x), ascending.begin() + 1,
+                               ascending.end() - 1);
+  const std::size_t left = next - ascending.begin() - 1;
+  return {left, std::clamp((x - ascending[left]) / (*next - ascending[left]), 0.0, 1.0)};
+}
+
 /// Parameters in (a, b) where x(s) crosses the sheet's seam.
 void appendSeamCrossings(const Sheet& sheet, const std::function<Eigen::Vector2d(double)>& x, double a,
                          double b, std::vector<double>& found) {
@@ -158,11 +171,10 @@ PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSid
 /// The samples' feet on a side's sheet. Where the sheet bends sharply a point has several, and which one is
 /// reached depends on where the way to it starts: at the map's parameter of the point, or at a neighbour's
 /// foot. The nearest one counts.
-std::vector<Eigen::Vector2d> feetOn(const SheetSide& side, const SampledCurve& sampled) {
+std::vector<Eigen::Vector2d> feetOn(const SheetSide& side, const SampledCurve& sampled, double reach) {
   const auto& run = *side.run;
   std::vector<Eigen::Vector2d> ofMap, feet;
   std::vector<double> off;
-  std::size_t at = 0;
   const auto tryFrom = [&](std::size_t i, const Eigen::Vector2d& guess) {
     const Eigen::Vector2d foot = side.sheet->footPoint(sampled.point[i], guess);
     const double distance = (side.sheet->jet(foot).s - sampled.point[i]).norm();
@@ -175,25 +187,27 @@ std::vector<Eigen::Vector2d> feetOn(const SheetSide& side, const SampledCurve& s
     if (off[i] > kComposedError) tryFrom(i, feet[beside] + ofMap[i] - ofMap[beside]);
   };
   for (std::size_t i = 0; i < sampled.t.size(); ++i) {
-    while (at + 2 < run.t.size() && run.t[at + 1] < sampled.t[i]) ++at;
-    const double x = std::clamp((sampled.t[i] - run.t[at]) / (run.t[at + 1] - run.t[at]), 0.0, 1.0);
-    ofMap.push_back((1 - x) * run.uv[at] + x * run.uv[at + 1]);
+    const auto [left, x] = placeAmong(run.t, sampled.t[i]);
+    ofMap.push_back((1 - x) * run.uv[left] + x * run.uv[left + 1]);
     feet.push_back(ofMap.back());
     off.push_back(HUGE_VAL);
     tryFrom(i, ofMap[i]);
     if (i > 0) tryBeside(i, i - 1);
   }
   for (std::size_t i = feet.size(); i-- > 1;) tryBeside(i - 1, i);
+  for (std::size_t i = 0; i < feet.size(); ++i)
+    if (off[i] > reach)
+      throw stageError("fit",
+                       "the fitted surface misses the boundary; use a smaller tolerance or edge length",
+                       side.region + ", " + sampled.curve->name, sampled.point[i]);
   return feet;
 }
 
 }  // namespace
 
 double SampledCurve::lengthAt(double at) const {
-  const auto next = std::clamp(std::lower_bound(t.begin(), t.end(), at), t.begin() + 1, t.end() - 1);
-  const std::size_t i = next - t.begin();
-  const double x = std::clamp((at - t[i - 1]) / (t[i] - t[i - 1]), 0.0, 1.0);
-  return (1 - x) * s[i - 1] + x * s[i];
+  const auto [left, x] = placeAmong(t, at);
+  return (1 - x) * s[left] + x * s[left + 1];
 }
 
 SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& sides, double reach) {
@@ -215,14 +229,7 @@ SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& 
     }
     sampled.point.push_back(p);
   }
-  for (const auto& side : sides) {
-    auto& feet = sampled.foot.emplace_back(feetOn(side, sampled));
-    for (std::size_t i = 0; i < feet.size(); ++i)
-      if ((side.sheet->jet(feet[i]).s - sampled.point[i]).norm() > reach)
-        throw stageError("fit",
-                         "the fitted surface misses the boundary; use a smaller tolerance or edge length",
-                         side.region + ", " + curve.name, sampled.point[i]);
-  }
+  for (const auto& side : sides) sampled.foot.push_back(feetOn(side, sampled, reach));
   return sampled;
 }
 
@@ -336,11 +343,8 @@ std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<
   const Sheet &sheetA = *sides[0].sheet, &sheetB = *sides[1].sheet;
   const PlaneCurve wholeA = planeCurve(sampled, 0, sides[0], {closeness, closeness}, progress);
   const auto guessB = [&](double s) {
-    const auto next = std::clamp(std::lower_bound(sampled.s.begin(), sampled.s.end(), s),
-                                 sampled.s.begin() + 1, sampled.s.end() - 1);
-    const std::size_t i = next - sampled.s.begin();
-    const double x = std::clamp((s - sampled.s[i - 1]) / (sampled.s[i] - sampled.s[i - 1]), 0.0, 1.0);
-    return Eigen::Vector2d((1 - x) * sampled.foot[1][i - 1] + x * sampled.foot[1][i]);
+    const auto [left, x] = placeAmong(sampled.s, s);
+    return Eigen::Vector2d((1 - x) * sampled.foot[1][left] + x * sampled.foot[1][left + 1]);
   };
   const auto sampleB = [&](double s) {
     const Eigen::Vector2d x = sheetB.footPoint(sheetA.jet(wholeA.point(s)).s, guessB(s));

@@ -18,7 +18,8 @@ struct CurveOnSheet {
   ModelCurve curve;
   BoundaryRun run{};
 
-  CurveOnSheet(SplineSurface surface, const std::vector<Eigen::Vector3d>& points) : sheet{std::move(surface), {}, 0} {
+  CurveOnSheet(SplineSurface surface, const std::vector<Eigen::Vector3d>& points)
+      : sheet{std::move(surface), {}, 0} {
     auto chain = std::make_shared<PolylineCurve>(points);
     run.points = points;
     run.t = chain->parameters();
