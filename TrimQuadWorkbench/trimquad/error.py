@@ -10,6 +10,7 @@ class Error(Exception):
     where     the element it happened at, such as 'Face3' or 'line 12'; may be empty
     position  (x, y, z) in model units, or None
     coarse    whether shorter edges of the quads are the cure
+    others    where several regions failed at once: an Error of each of the others
     """
 
     def __init__(self, kind, stage, message, where="", position=None, coarse=False):
@@ -25,6 +26,7 @@ class Error(Exception):
         self.message = message
         self.where = where
         self.position = None if position is None else tuple(float(x) for x in position)
+        self.others = []
 
 
 def input_error(stage, message, where=""):

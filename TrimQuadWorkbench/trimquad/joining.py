@@ -1,5 +1,6 @@
 """Fitted surfaces trimmed and joined to one model; what is at fault is fitted again, then cut."""
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 from . import regions
 from .cuts import bends_sharply, cut_failed
@@ -45,6 +46,7 @@ def trim(result, progress):
                     [r.fitted for r in result.regions],
                     result.fit_tolerance,
                     native_progress,
+                    result.options.threads,
                 )
                 result.native_shape = native.assemble(result.spline)
             if not _refit_faulty(result, progress):
@@ -55,11 +57,11 @@ def trim(result, progress):
                 raise
             result.spline = None
             # `where` is the region's name, or the name and an edge of it.
-            name = error.where.split(",")[0]
-            guilty = [r for r in result.regions if r.fitted is not None and r.name == name]
-            for item in guilty:
-                if not _fit_parts_closer(item, result, progress):
-                    _refit(item, set(), error, result, progress)
+            errors = {e.where.split(",")[0]: e for e in [error, *error.others]}
+            guilty = [r for r in result.regions if r.fitted is not None and r.name in errors]
+            closer = [_fit_parts_closer(item, result, progress) for item in guilty]
+            _refit_all([(item, set(), errors[item.name]) for item, done in zip(guilty, closer) if not done],
+                       result, progress)
             if not guilty:
                 for item in result.regions:
                     if item.fitted is not None:
@@ -86,28 +88,41 @@ def _refit_faulty(result, progress):
     faces = result.spline.faces
     folded = [r.fitted.folded_charts if r.fitted is not None else () for r in result.regions]
     folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
-    for face, faults in zip(faces, load().face_faults(result.spline, folded_faces)):
+    for face, faults in zip(faces, load().face_faults(result.spline, folded_faces, result.options.threads)):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
     if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
         return True
+    at_fault = []
     for index, found in faulty.items():
         item = result.regions[index]
         advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
-        _refit(item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name), result, progress)
+        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name)))
+    _refit_all(at_fault, result, progress)
     return bool(faulty)
+
+
+def _refit_all(at_fault, result, progress):
+    """Fits regions (RegionResult, charts, error) again, several at once. Those that bend sharply inside keep their error
+    instead, to be cut there."""
+    again = []
+    for item, charts, error in at_fault:
+        if bends_sharply(item, result, progress):
+            item.fitted = None
+            item.error = error
+        else:
+            again.append((item, charts, error))
+    with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
+        for done in [pool.submit(_refit, *one, result, progress) for one in again]:
+            done.result()
 
 
 def _refit(item, charts, error, result, progress):
     """Fits a region again in the next of the ways there are, then over another map. Where there is none left, its error is
-    kept instead; and first of all where it is to be cut along edges where it bends sharply.
+    kept instead.
 
     charts: those whose faces are at fault; empty where the region's edges are, many of which small holes have
     """
-    if bends_sharply(item, result, progress):
-        item.fitted = None
-        item.error = error
-        return
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     try:

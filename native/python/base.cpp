@@ -5,6 +5,7 @@
 #include "bindings.h"
 #include "trimquad/base/error.h"
 #include "trimquad/base/progress.h"
+#include "trimquad/spline/region_errors.h"
 
 namespace py = pybind11;
 
@@ -29,12 +30,22 @@ py::object position(const Error& error) {
   return py::make_tuple(error.position()->x(), error.position()->y(), error.position()->z());
 }
 
-void raise(const Error& error) {
+py::object toPython(const Error& error) {
   const py::object type = py::module_::import("trimquad.error").attr("Error");
   const py::object value =
       type(kindName(error.kind()), error.stage(), error.message(), error.where(), position(error));
   value.attr("coarse") = error.kind() == Error::Kind::Coarse;
-  PyErr_SetObject(type.ptr(), value.ptr());
+  return value;
+}
+
+void raise(const Error& error) {
+  const py::object value = toPython(error);
+  if (const auto* several = dynamic_cast<const RegionErrors*>(&error)) {
+    py::list others;
+    for (const Error& other : several->others()) others.append(toPython(other));
+    value.attr("others") = others;
+  }
+  PyErr_SetObject(py::type::of(value).ptr(), value.ptr());
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ void bindBrep(py::module_& m) {
   m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
-  m.def("face_faults", &faceFaults, py::arg("spline"), py::arg("folded"), Released(),
+  m.def("face_faults", &faceFaults, py::arg("spline"), py::arg("folded"), py::arg("threads"), Released(),
         "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone; with those "
         "in `folded` (indices) also together with each neighbour");
   m.def("face_order", &faceOrder, py::arg("spline"), Released(),

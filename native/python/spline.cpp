@@ -96,7 +96,7 @@ void bindSpline(py::module_& m) {
         return faces;
       });
   m.def("trim_model", &trimModel, py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"),
-        py::arg("progress"), Released());
+        py::arg("progress"), py::arg("threads"), Released());
   m.def("fitted_as_moved", &fittedAsMoved, py::arg("fitted"), py::arg("model"), py::arg("region"),
         "the fit of one of the moved regions, with the surface and the deviations that it has in the model");
 }

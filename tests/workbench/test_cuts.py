@@ -136,7 +136,7 @@ def leading_edge(radius):
 def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, radius, cut):
     native = joining.load()
 
-    def face_faults(spline, folded):
+    def face_faults(spline, folded, threads):
         whole = len(spline.faces) == 1 and spline is first
         return [["SelfIntersect"] if whole else [] for _ in spline.faces]
 

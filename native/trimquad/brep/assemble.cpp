@@ -24,6 +24,7 @@
 #include <map>
 #include <set>
 
+#include "trimquad/base/parallel.h"
 #include "trimquad/brep/occt_guard.h"
 
 namespace trimquad {
@@ -225,17 +226,23 @@ std::vector<int> faceOrder(const SplineModel& model) {
   });
 }
 
-std::vector<std::vector<std::string>> faceFaults(const SplineModel& model, const std::vector<int>& folded) {
+std::vector<std::vector<std::string>> faceFaults(const SplineModel& model, const std::vector<int>& folded,
+                                                 int threads) {
   return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
-    std::vector<std::vector<std::string>> result;
     const Assembly assembly(model);
-    for (const auto& face : assembly.faces()) result.push_back(faults(Shape(face)));
-    const auto alone = result;
-    for (const auto& [a, b] : neighboursOf(model, folded)) {
-      if (!alone[a].empty() || !alone[b].empty()) continue;
-      const auto found = faults(Shape(compound({assembly.faces()[a], assembly.faces()[b]})));
-      for (const int face : {a, b}) result[face].insert(result[face].end(), found.begin(), found.end());
-    }
+    const auto& faces = assembly.faces();
+    std::vector<std::vector<std::string>> result(faces.size());
+    parallelEach(int(faces.size()), threads, [&](int f) { result[f] = faults(Shape(faces[f])); });
+    std::vector<std::pair<int, int>> pairs;
+    for (const auto& [a, b] : neighboursOf(model, folded))
+      if (result[a].empty() && result[b].empty()) pairs.push_back({a, b});
+    std::vector<std::vector<std::string>> together(pairs.size());
+    parallelEach(int(pairs.size()), threads, [&](int k) {
+      together[k] = faults(Shape(compound({faces[pairs[k].first], faces[pairs[k].second]})));
+    });
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      for (const int face : {pairs[k].first, pairs[k].second})
+        result[face].insert(result[face].end(), together[k].begin(), together[k].end());
     return result;
   });
 }

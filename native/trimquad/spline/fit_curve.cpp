@@ -12,6 +12,8 @@ namespace {
 /// Neighbouring samples are at most this part of a span apart, so that the curve cannot swing out between
 /// them.
 constexpr int kIntervalsPerSpan = 5;
+/// Halvings of a span in a row that may bring less than half of the distance: beyond that the samples jump.
+constexpr int kPatience = 10;
 
 template <int Dim>
 using Samples = std::vector<CurveSample<Dim>>;
@@ -134,8 +136,14 @@ SplineCurve<Dim> fitCurve(std::vector<CurveSample<Dim>>& samples, int degree, do
   TRIMQUAD_ASSERT(samples.size() >= 2);
   const double first = samples.front().s, last = samples.back().s, narrowest = 1e-6 * (last - first);
   std::vector<double> breaks{first, last};
+  // By span: the distance that was last halved in it, and how often the span was since.
+  struct History {
+    double distance = HUGE_VAL;
+    int halvings = 0;
+  };
+  std::vector<History> history(1);
   const auto anywhere = [](const CurveSample<Dim>&, const CurveSample<Dim>&) { return true; };
-  constexpr int maxRounds = 60, maxSamples = 200000;
+  constexpr int maxRounds = 60, maxSamples = 40000;
   for (int round = 0; round < maxRounds && samples.size() <= maxSamples; ++round) {
     progress.check();
     fillSpans<Dim>(samples, breaks, between);
@@ -160,14 +168,26 @@ SplineCurve<Dim> fitCurve(std::vector<CurveSample<Dim>>& samples, int degree, do
       continue;
     }
     std::vector<double> finer;
+    std::vector<History> finerHistory;
+    bool hopeless = false;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
       finer.push_back(breaks[k]);
-      if (misses(worst[k]) && breaks[k + 1] - breaks[k] > narrowest)
-        finer.push_back((breaks[k] + breaks[k + 1]) / 2);
+      finerHistory.push_back(history[k]);
+      if (!misses(worst[k]) || !(breaks[k + 1] - breaks[k] > narrowest)) continue;
+      auto& [distance, halvings] = finerHistory.back();
+      if (worst[k] < distance / 2) {
+        distance = worst[k];
+        halvings = 0;
+      } else {
+        hopeless = hopeless || ++halvings > kPatience;
+      }
+      finer.push_back((breaks[k] + breaks[k + 1]) / 2);
+      finerHistory.push_back(finerHistory.back());
     }
     finer.push_back(last);
-    if (finer.size() == breaks.size()) break;
+    if (hopeless || finer.size() == breaks.size()) break;
     breaks = std::move(finer);
+    history = std::move(finerHistory);
   }
   throw stageError("fit", "a boundary curve cannot be followed within the tolerance; use a larger tolerance");
 }

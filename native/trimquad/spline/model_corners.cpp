@@ -123,6 +123,7 @@ CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
 /// Vertices inside regions, where borders meet, and the borders' edges.
 void ModelTrimmer::placeInnerPoints() {
   borderEdges_.resize(model_.regions.size());
+  RegionErrorList errors;
   for (int r = 0; r < int(model_.regions.size()); ++r) {
     if (!borders_[r]) continue;
     const auto& layout = *fitted_[r]->layout;
@@ -136,8 +137,10 @@ void ModelTrimmer::placeInnerPoints() {
     for (int b = 0; b < int(layout.borders.size()); ++b) {
       if (!borders_[r]->staysOnSurfaces(b)) {
         const SheetLine line = borders_[r]->line(b, 0);
-        throw stageError("fit", "a border between charts leaves the fitted surfaces; use a smaller tolerance",
-                         model_.regions[r].name, line.sheet->jet(line.start).s);
+        errors.add(stageError("fit",
+                              "a border between charts leaves the fitted surfaces; use a smaller tolerance",
+                              model_.regions[r].name, line.sheet->jet(line.start).s));
+        break;
       }
       auto edge = borders_[r]->edge(b);
       edge.edge.start = {vertexOfPoint_.at({r, layout.borders[b].startPoint})};
@@ -146,6 +149,7 @@ void ModelTrimmer::placeInnerPoints() {
       borderEdges_[r].push_back(std::move(edge));
     }
   }
+  errors.raise();
 }
 
 }  // namespace trimquad

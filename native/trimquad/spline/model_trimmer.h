@@ -9,9 +9,11 @@
 #include "trimquad/base/progress.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/spline/border_edges.h"
+#include "trimquad/spline/corner_moves.h"
 #include "trimquad/spline/corner_point.h"
 #include "trimquad/spline/curve_pieces.h"
 #include "trimquad/spline/fit_surface.h"
+#include "trimquad/spline/region_errors.h"
 #include "trimquad/spline/spline_model.h"
 #include "trimquad/spline/tangent_sheets.h"
 #include "trimquad/spline/trim_curve.h"
@@ -41,19 +43,21 @@ struct CurveWithSides {
 class ModelTrimmer {
  public:
   ModelTrimmer(const Model& model, const std::vector<const GridMap*>& maps,
-               const std::vector<const FittedSurface*>& fitted, double tolerance, const Progress& progress)
+               const std::vector<const FittedSurface*>& fitted, double tolerance, int threads,
+               const Progress& progress)
       : model_(model),
         maps_(maps),
         fitted_(fitted),
         tolerance_(tolerance),
         reach_(10 * tolerance + 1e-9 * model.diagonal),
-        progress_(progress),
-        corners_(0) {
+        threads_(threads),
+        progress_(progress) {
     makeSheets();
     collectRuns();
-    sampleCurves();
+    meetInCorners();
+    forEachCurve([&](int id, CurveWithSides& curve) { sample(id, curve); });
     placeSeams();
-    for (auto& [id, curve] : curves_) intersect(curve);
+    forEachCurve([&](int, CurveWithSides& curve) { intersect(curve); });
     joinTangent();
     placeCorners();
   }
@@ -67,8 +71,14 @@ class ModelTrimmer {
   void settleSplits(std::vector<CurveSplit>& splits);
   int sheetOf(const BoundaryRun& run) const { return firstSheet_[run.region] + run.chart; }
 
-  void sampleCurves() {
-    for (auto& [id, curve] : curves_) sample(id, curve);
+  /// Calls `step(id, curve)` for all curves, several at once. Throws what goes wrong together.
+  template <class Step>
+  void forEachCurve(const Step& step) {
+    std::vector<std::pair<int, CurveWithSides*>> all;
+    for (auto& [id, curve] : curves_) all.push_back({id, &curve});
+    RegionErrorList errors;
+    errors.attemptEach(int(all.size()), threads_, [&](int k) { step(all[k].first, *all[k].second); });
+    errors.raise();
   }
   void sample(int id, CurveWithSides& curve) {
     // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
@@ -86,7 +96,10 @@ class ModelTrimmer {
       curve.intersection =
           intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
   }
-  std::vector<TangentCorner> tangentCorners() const;
+  std::vector<SheetCorner> tangentCorners() const;
+  bool acceptsMoved(int sheet, const SplineSurface& surface);
+  std::vector<char> mayMove() const;
+  void meetInCorners();
   void joinTangent();
 
   void placeSeams() {
@@ -109,7 +122,7 @@ class ModelTrimmer {
                          [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
     return int(found - uses_.begin());
   }
-  int cornerOf(const RunEnd& end) const { return const_cast<DisjointSets&>(corners_).root(end.corner); }
+  int cornerOf(const RunEnd& end) const { return corners_[end.corner]; }
   int groupOf(const BoundaryRun& run, const RunEnd& end) const { return uses_[cornerUse(run, end)].group; }
 
   void placeCorners();
@@ -117,6 +130,13 @@ class ModelTrimmer {
   void placeInnerPoints();
   int layoutPoint(const CornerUse& use) const;
 
+  struct CurveEdge {
+    std::vector<TrimPiece> pieces;
+    std::vector<const SheetSide*> sides;
+    bool loose;  ///< on sheets that only touch
+  };
+  std::vector<CurveEdge> edgesOf(int id, const CurveWithSides& curve,
+                                 const std::vector<double>& tolerances) const;
   PieceLoop borderPiece(int region, const Layout::Stretch& stretch,
                         const std::vector<SplineEdgeId>& edges) const;
   void appendShells(SplineModel& result) const;
@@ -125,8 +145,9 @@ class ModelTrimmer {
   const std::vector<const GridMap*>& maps_;
   const std::vector<const FittedSurface*>& fitted_;
   double tolerance_, reach_;
+  int threads_;
   const Progress& progress_;
-  DisjointSets corners_;
+  std::vector<int> corners_;  ///< by corner: the one that stands for all that short curves connect
   std::vector<Sheet> sheets_;
   std::vector<int> sheetRegion_, firstSheet_;        ///< by sheet; by region
   std::vector<std::optional<BorderLines>> borders_;  ///< by region, where it has several charts

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trimquad/base/parallel.h"
 #include "trimquad/spline/deviation.h"
 #include "trimquad/spline/moved_surface.h"
 #include "trimquad/spline/surface_samples.h"
@@ -88,17 +89,17 @@ void appendMoves(const StripMoves& strip, std::size_t samples, double width,
 /// What sheet `moving` has to move by in a corner to meet the one of lower rank that has the same tangents
 /// there.
 template <class Rank>
-void appendCornerMove(const TangentCorner& corner, int moving, const std::vector<Sheet>& sheets,
+void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<Sheet>& sheets,
                       const Rank& rank, std::vector<SurfaceMove>& moves) {
   const auto normal = [](const SplineSurface::Jet& jet) -> Eigen::Vector3d {
     return jet.su.cross(jet.sv).normalized();
   };
   const auto own = std::find_if(corner.uses.begin(), corner.uses.end(),
-                                [&](const TangentCorner::Use& use) { return use.sheet == moving; });
+                                [&](const SheetCorner::Use& use) { return use.sheet == moving; });
   if (own == corner.uses.end()) return;
   const Eigen::Vector2d y = sheets[moving].footPoint(corner.point, own->at);
   const auto at = sheets[moving].jet(y);
-  const TangentCorner::Use* still = nullptr;
+  const SheetCorner::Use* still = nullptr;
   SplineSurface::Jet there;
   for (const auto& use : corner.uses) {
     if (!(rank(use.sheet) < rank(moving)) || (still && !(rank(use.sheet) < rank(still->sheet)))) continue;
@@ -116,7 +117,7 @@ void appendCornerMove(const TangentCorner& corner, int moving, const std::vector
 }  // namespace
 
 std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                                   const std::vector<TangentCorner>& corners,
+                                   const std::vector<SheetCorner>& corners,
                                    const std::vector<char>& mayMove, double width, double gap,
                                    const std::function<bool(int, const SplineSurface&)>& accepts,
                                    const Progress& progress) {
@@ -149,20 +150,22 @@ std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector
 }
 
 ChartDeviation deviationFrom(const SplineSurface& surface, const Region& region, const GridMap& map,
-                             const FittedSurface& fitted, const Progress& progress) {
+                             const FittedSurface& fitted, int threads, const Progress& progress) {
   ChartDeviation result;
   if (map.mesh.n_faces() == 0) return result;
   SplineSpace space{{surface.degreeU, surface.closedU, {}}, {surface.degreeV, false, {}}};
   space.u.breaks.assign(surface.knotsU.begin() + surface.degreeU, surface.knotsU.end() - surface.degreeU);
   space.v.breaks.assign(surface.knotsV.begin() + surface.degreeV, surface.knotsV.end() - surface.degreeV);
   SurfaceSamples source(region, map, fitted.chart, surface.firstU(), progress);
-  auto samples = source.make(space, true, 1, progress);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (i % 1024 == 0) progress.check();
-    auto& s = samples[i];
-    const Eigen::Vector2d foot = surface.footPoint(s.point, s.parameter, kFootStep);
-    s.distance = (surface.point(foot[0], foot[1]) - s.point).norm();
-  }
+  auto samples = source.make(space, true, threads, progress);
+  parallelParts(int(samples.size()), threads, [&](int begin, int end) {
+    progress.check();
+    for (int i = begin; i < end; ++i) {
+      auto& s = samples[i];
+      const Eigen::Vector2d foot = surface.footPoint(s.point, s.parameter, kFootStep);
+      s.distance = (surface.point(foot[0], foot[1]) - s.point).norm();
+    }
+  });
   const Deviation deviation = deviationOf(samples, std::vector<char>(samples.size(), 0));
   result.max = deviation.max;
   result.rms = deviation.rms;

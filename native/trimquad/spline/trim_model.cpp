@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "trimquad/base/error.h"
 #include "trimquad/spline/model_trimmer.h"
@@ -78,7 +79,7 @@ void ModelTrimmer::collectRuns() {
                                          : boundaryRuns(model_, r, fitted_[r]->chart);
     runs_.insert(runs_.end(), runs.begin(), runs.end());
   }
-  corners_ = DisjointSets(corners);
+  DisjointSets together(corners);
   settleSplits(splits);
   cutAtSplits(model_, splits, runs_);
   std::stable_sort(runs_.begin(), runs_.end(), [](const BoundaryRun& a, const BoundaryRun& b) {
@@ -92,16 +93,59 @@ void ModelTrimmer::collectRuns() {
     return length < kShortestEdge;
   };
   for (const auto& run : runs_)
-    if (tooShort(run)) corners_.unite(run.start.corner, run.end.corner);
+    if (tooShort(run)) together.unite(run.start.corner, run.end.corner);
   std::erase_if(runs_, tooShort);
+  for (int c = 0; c < corners; ++c) corners_.push_back(together.root(c));
   for (const auto& run : runs_)
     curves_[curvePieces_->pieceOf(run)].sides.push_back(
         {&sheets_[sheetOf(run)], &run, model_.regions[run.region].name, {}, {}});
 }
 
+/// By sheet: whether its surface may move. Those of one region are joined to each other.
+std::vector<char> ModelTrimmer::mayMove() const {
+  std::vector<char> single;
+  for (const int r : sheetRegion_) single.push_back(!borders_[r]);
+  return single;
+}
+
+/// Whether a sheet may become this surface; if so, how far its region is from it is kept.
+bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface) {
+  const int r = sheetRegion_[sheet];
+  const auto deviation =
+      deviationFrom(surface, model_.regions[r], *maps_[r], *fitted_[r], threads_, progress_);
+  if (deviation.max > std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)) return false;
+  moved_[r] = deviation;
+  return true;
+}
+
+/// Moves single surfaces so that all around a corner of the model meet there.
+void ModelTrimmer::meetInCorners() {
+  std::map<int, SheetCorner> corners;
+  std::set<std::tuple<int, int, int>> known;  // corner, sheet, vertex
+  for (const auto& run : runs_)
+    for (const bool atStart : {true, false}) {
+      const RunEnd& end = atStart ? run.start : run.end;
+      const int sheet = sheetOf(run), id = cornerOf(end);
+      if (id >= int(model_.corners.size()) || !known.insert({id, sheet, end.vertex}).second) continue;
+      auto& corner = corners[id];
+      corner.point = model_.corners[id];
+      const Eigen::Vector2d at = atStart ? run.uv.front() : run.uv.back();
+      corner.uses.push_back({sheet, at, {}});
+      const auto& surface = model_.regions[run.region].surface;
+      if (!surface) continue;
+      const auto jet = sheets_[sheet].jet(at);
+      corner.uses.back().normal = surface->closestFacing(corner.point, jet.su.cross(jet.sv)).normal;
+    }
+  std::vector<SheetCorner> all;
+  for (auto& [id, corner] : corners) all.push_back(std::move(corner));
+  trimquad::meetInCorners(
+      sheets_, all, mayMove(), kSmallestTolerance,
+      [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
+}
+
 /// The corners in which curves end along which sheets touch, with all sheets around them.
-std::vector<TangentCorner> ModelTrimmer::tangentCorners() const {
-  std::map<int, TangentCorner> corners;
+std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
+  std::map<int, SheetCorner> corners;
   for (const auto& [id, curve] : curves_)
     if (curve.sides.size() == 2 && !curve.intersection)
       for (const auto& end : {curve.sides[0].run->start, curve.sides[0].run->end}) corners[cornerOf(end)];
@@ -117,7 +161,7 @@ std::vector<TangentCorner> ModelTrimmer::tangentCorners() const {
         corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back()});
       }
     }
-  std::vector<TangentCorner> result;
+  std::vector<SheetCorner> result;
   for (auto& [id, corner] : corners) result.push_back(std::move(corner));
   return result;
 }
@@ -128,17 +172,9 @@ void ModelTrimmer::joinTangent() {
   for (const auto& [id, curve] : curves_)
     if (curve.sides.size() == 2 && !curve.intersection)
       tangent.push_back({&curve.sampled[0], {sheetOf(*curve.sides[0].run), sheetOf(*curve.sides[1].run)}});
-  std::vector<char> single;
-  for (const int r : sheetRegion_) single.push_back(!borders_[r]);
-  const auto accepts = [&](int sheet, const SplineSurface& surface) {
-    const int r = sheetRegion_[sheet];
-    const auto deviation = deviationFrom(surface, model_.regions[r], *maps_[r], *fitted_[r], progress_);
-    if (deviation.max > std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)) return false;
-    moved_[r] = deviation;
-    return true;
-  };
-  const auto moved = joinTangentSheets(sheets_, tangent, tangentCorners(), single, kStripWidth * tolerance_,
-                                       kTangentGap * model_.diagonal, accepts, progress_);
+  const auto moved = joinTangentSheets(
+      sheets_, tangent, tangentCorners(), mayMove(), kStripWidth * tolerance_, kTangentGap * model_.diagonal,
+      [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
   for (auto& [id, curve] : curves_) {
     const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {
       return std::binary_search(moved.begin(), moved.end(), sheetOf(*side.run));
@@ -158,11 +194,43 @@ PieceLoop ModelTrimmer::borderPiece(int region, const Layout::Stretch& stretch,
            forward ? edge.edge.end : edge.edge.start}};
 }
 
+/// The edges along a curve: one that its two sheets share, or one a sheet.
+std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWithSides& curve,
+                                                           const std::vector<double>& tolerances) const {
+  progress_.check();
+  std::vector<CurveEdge> result;
+  if (curve.sides.size() != 2) {
+    for (std::size_t k = 0; k < curve.sides.size(); ++k) {
+      const double most = tolerances[curve.sides[k].run->region], onSheet = kCloseness * most;
+      const CurveCloseness closeness{onSheet, curvePieces_->isPolyline(id) ? kChainCloseness * most : onSheet};
+      result.push_back(
+          {freeEdge(curve.sampled[k], curve.sides[k], closeness, progress_), {&curve.sides[k]}, false});
+    }
+    return result;
+  }
+  const SheetSide &a = curve.sides[0], &b = curve.sides[1];
+  std::optional<std::vector<TrimPiece>> edge;
+  if (curve.intersection) {
+    const auto& piece = (*curvePieces_)[id];
+    edge = sharedEdge(*curve.intersection, piece.start == piece.end,
+                      vertices_[groupOf(*a.run, a.run->start)].point,
+                      vertices_[groupOf(*a.run, a.run->end)].point, progress_);
+  }
+  const bool loose = !edge;
+  if (loose) {
+    const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+    edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
+  }
+  result.push_back({std::move(*edge), {&a, &b}, loose});
+  return result;
+}
+
 SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
   SplineModel result;
   for (const auto& vertex : vertices_) result.vertices.push_back({vertex.point, kSmallestTolerance});
   std::map<const BoundaryRun*, std::vector<LoopPiece>> pieces;
-  const auto addEdges = [&](const std::vector<TrimPiece>& edge, const std::vector<const SheetSide*>& sides) {
+  const auto addEdge = [&](const CurveEdge& added) {
+    const auto& [edge, sides, loose] = added;
     const BoundaryRun& first = *sides[0]->run;
     SplineVertexId start{groupOf(first, first.start)};
     for (std::size_t i = 0; i < edge.size(); ++i) {
@@ -173,6 +241,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
       }
       const SplineEdgeId id{int(result.edges.size())};
       result.edges.push_back({edge[i].curve, start, end, std::max(kSmallestTolerance, 1.01 * edge[i].gap)});
+      result.looseEdges += loose && edge[i].gap > kLooseGap * model_.diagonal;
       for (std::size_t k = 0; k < sides.size(); ++k) {
         const bool forward = sides[k]->run->forward;
         pieces[sides[k]->run].push_back(
@@ -181,39 +250,24 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
       start = end;
     }
   };
-  for (const auto& [id, curve] : curves_) {
-    progress_.check();
-    if (curve.sides.size() == 2) {
-      const SheetSide &a = curve.sides[0], &b = curve.sides[1];
-      std::optional<std::vector<TrimPiece>> edge;
-      if (curve.intersection) {
-        const auto& piece = (*curvePieces_)[id];
-        edge = sharedEdge(*curve.intersection, piece.start == piece.end,
-                          vertices_[groupOf(*a.run, a.run->start)].point,
-                          vertices_[groupOf(*a.run, a.run->end)].point, progress_);
-      }
-      if (!edge) {
-        const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
-        edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
-        for (const auto& part : *edge) result.looseEdges += part.gap > kLooseGap * model_.diagonal;
-      }
-      addEdges(*edge, {&a, &b});
-    } else {
-      for (std::size_t k = 0; k < curve.sides.size(); ++k) {
-        const double most = tolerances[curve.sides[k].run->region], onSheet = kCloseness * most;
-        const CurveCloseness closeness{onSheet,
-                                       curvePieces_->isPolyline(id) ? kChainCloseness * most : onSheet};
-        addEdges(freeEdge(curve.sampled[k], curve.sides[k], closeness, progress_), {&curve.sides[k]});
-      }
-    }
-  }
+  std::vector<std::pair<int, const CurveWithSides*>> all;
+  for (const auto& [id, curve] : curves_) all.push_back({id, &curve});
+  std::vector<std::vector<CurveEdge>> edgesOfCurves(all.size());
+  RegionErrorList errors;
+  errors.attemptEach(int(all.size()), threads_,
+                     [&](int k) { edgesOfCurves[k] = edgesOf(all[k].first, *all[k].second, tolerances); });
+  errors.raise();
+  for (const auto& ofCurve : edgesOfCurves)
+    for (const auto& edge : ofCurve) addEdge(edge);
 
   const auto appendFaces = [&](int sheet, const std::vector<PieceLoop>& loops) {
     const int r = sheetRegion_[sheet];
-    for (auto& face : trimmedFaces(sheets_[sheet], loops, r, model_.regions[r].name, result)) {
-      face.chart = sheet - firstSheet_[r];
-      result.faces.push_back(std::move(face));
-    }
+    errors.attempt([&] {
+      for (auto& face : trimmedFaces(sheets_[sheet], loops, r, model_.regions[r].name, result)) {
+        face.chart = sheet - firstSheet_[r];
+        result.faces.push_back(std::move(face));
+      }
+    });
   };
   // By sheet, loop and stretch: the edges along the region's boundary.
   std::map<std::array<int, 3>, PieceLoop> stretches;
@@ -253,6 +307,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
       appendFaces(firstSheet_[r] + c, loops);
     }
   }
+  errors.raise();
 
   for (const auto& face : result.faces)
     for (const auto& loop : face.loops)
@@ -302,25 +357,23 @@ void ModelTrimmer::appendShells(SplineModel& result) const {
 
 SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& maps,
                       const std::vector<const FittedSurface*>& fitted, double tolerance,
-                      const Progress& progress) {
+                      const Progress& progress, int threads) {
   TRIMQUAD_ASSERT(maps.size() == model.regions.size() && fitted.size() == model.regions.size());
-  const ModelTrimmer trimmer(model, maps, fitted, tolerance, progress);
+  const ModelTrimmer trimmer(model, maps, fitted, tolerance, threads, progress);
   std::vector<double> tolerances(model.regions.size(), tolerance);
   constexpr int maxAttempts = 3;
   for (int attempt = 1;; ++attempt) {
     SplineModel result = trimmer.trim(tolerances);
-    bool clean = true;
-    for (const auto& face : result.faces) {
-      const auto crossing = loopCrossing(face);
-      if (!crossing) continue;
-      clean = false;
-      if (attempt == maxAttempts)
-        throw stageError("fit",
-                         "trimming curves cross each other on the fitted surface; use a smaller tolerance",
-                         model.regions[face.region].name, face.surface.point((*crossing)[0], (*crossing)[1]));
-      tolerances[face.region] /= 8;
-    }
-    if (clean) return result;
+    RegionErrorList crossings;
+    for (const auto& face : result.faces)
+      if (const auto crossing = loopCrossing(face)) {
+        crossings.add(stageError(
+            "fit", "trimming curves cross each other on the fitted surface; use a smaller tolerance",
+            model.regions[face.region].name, face.surface.point((*crossing)[0], (*crossing)[1])));
+        tolerances[face.region] /= 8;
+      }
+    if (crossings.empty()) return result;
+    if (attempt == maxAttempts) crossings.raise();
   }
 }
 

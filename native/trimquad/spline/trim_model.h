@@ -5,6 +5,7 @@
 #include "trimquad/base/progress.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/spline/fit_surface.h"
+#include "trimquad/spline/region_errors.h"
 #include "trimquad/spline/spline_model.h"
 
 namespace trimquad {
@@ -13,10 +14,12 @@ namespace trimquad {
 /// surfaces (their intersection), free edges follow the region's boundary curve within `tolerance`.
 /// `fitted[i]` belongs to `model.regions[i]`; a region that failed is null, its neighbours' edges there are
 /// free. Guarantees: every edge's curve agrees with its curves on the faces within the edge's tolerance
-/// (measured). \param tolerance largest distance of a free edge from the boundary curve, model units
+/// (measured). Throws RegionErrors with all regions that cannot be trimmed, as far as the first step at which
+/// one fails shows them. \param tolerance largest distance of a free edge from the boundary curve, model
+/// units
 SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& maps,
                       const std::vector<const FittedSurface*>& fitted, double tolerance,
-                      const Progress& progress);
+                      const Progress& progress, int threads = 1);
 
 /// The fit of a region whose surface was moved (SplineModel::moved), with the surface and the deviations that
 /// it has in the model.

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "trimquad/base/progress.h"
+#include "trimquad/spline/sheet.h"
+
+namespace trimquad {
+
+/// A corner of the model and the sheets around it.
+struct SheetCorner {
+  struct Use {
+    int sheet;
+    Eigen::Vector2d at;  ///< foot of the corner, or close to it
+    /// The unit normal that the region behind the sheet has there, where that is known.
+    std::optional<Eigen::Vector3d> normal = {};
+  };
+  Eigen::Vector3d point;
+  std::vector<Use> uses;
+};
+
+/// Moves sheets so that all sheets around a corner pass through one point, with the region's tangent plane
+/// where it is known: in corners where they have no common point otherwise, as where more than three sheets
+/// meet or the edges of three are tangent (a cusp). The point is the model's own, or that of the sheets which
+/// may not move. A sheet fades back to where it was over about a quad.
+/// \param mayMove by sheet \param error what a corner may be missed by, model units \param accepts (sheet,
+/// new surface) whether it may become so
+/// Returns the sheets that have moved, ascending.
+std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<SheetCorner>& corners,
+                               const std::vector<char>& mayMove, double error,
+                               const std::function<bool(int, const SplineSurface&)>& accepts,
+                               const Progress& progress);
+
+}  // namespace trimquad
