@@ -59,9 +59,8 @@ def trim(result, progress):
             # `where` is the region's name, or the name and an edge of it.
             errors = {e.where.split(",")[0]: e for e in [error, *error.others]}
             guilty = [r for r in result.regions if r.fitted is not None and r.name in errors]
-            closer = [_fit_parts_closer(item, result, progress) for item in guilty]
-            _refit_all([(item, set(), errors[item.name]) for item, done in zip(guilty, closer) if not done],
-                       result, progress)
+            if not any([_fit_parts_closer(item, result, progress) for item in guilty]):
+                _refit_all([(item, set(), errors[item.name]) for item in guilty], result, progress)
             if not guilty:
                 for item in result.regions:
                     if item.fitted is not None:
@@ -112,9 +111,13 @@ def _refit_all(at_fault, result, progress):
             item.error = error
         else:
             again.append((item, charts, error))
+    _at_once(_refit, again, result, progress)
+
+
+def _at_once(function, arguments, result, progress):
+    """What function(*one, result, progress) gives for each of the arguments."""
     with ThreadPoolExecutor(max_workers=result.options.threads) as pool:
-        for done in [pool.submit(_refit, *one, result, progress) for one in again]:
-            done.result()
+        return [done.result() for done in [pool.submit(function, *one, result, progress) for one in arguments]]
 
 
 def _refit(item, charts, error, result, progress):
@@ -162,20 +165,24 @@ def _applies(way, item, charts):
 
 def _fit_parts_closer(item, result, progress):
     """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
-    closer = False
-    for index in load().touching_regions(result.model, result.regions.index(item)):
-        part = result.regions[index]
-        if part.cut_from is None or part.fitted is None or part.fitted_closer:
-            continue
-        part.fitted_closer = True
-        try:
-            with progress.stage("fit", part.name) as native_progress:
-                part.fitted = regions.fit(part, result, native_progress, part=CLOSER, only=False)
-            closer = True
-        except Error as error:
-            if error.kind == "cancelled":
-                raise
-    return closer
+    around = [result.regions[k] for k in load().touching_regions(result.model, result.regions.index(item))]
+    parts = [(part,) for part in around if part.cut_from is not None]
+    return any(_at_once(_fit_closer, parts, result, progress))
+
+
+def _fit_closer(item, result, progress):
+    """Fits a region more closely, unless that was done before or cannot be. Whether it is."""
+    if item.fitted is None or item.fitted_closer:
+        return False
+    item.fitted_closer = True
+    try:
+        with progress.stage("fit", item.name) as native_progress:
+            item.fitted = regions.fit(item, result, native_progress, part=CLOSER, only=False)
+        return True
+    except Error as error:
+        if error.kind == "cancelled":
+            raise
+        return False
 
 
 def check(result, progress):
