@@ -114,10 +114,13 @@ def convert(thing, options=None, progress=None):
     progress = progress or Progress()
     options.validate()
     source = thing if isinstance(thing, Source) else Source(thing)
+    kept_memory = load().KeptMemory()
     try:
         return _convert(source, options, progress)
     except MemoryError as error:
         raise system_error("convert", error) from None
+    finally:
+        del kept_memory
 
 
 def _convert(source, options, progress):

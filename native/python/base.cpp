@@ -4,6 +4,7 @@
 
 #include "bindings.h"
 #include "trimquad/base/error.h"
+#include "trimquad/base/kept_memory.h"
 #include "trimquad/base/progress.h"
 #include "trimquad/spline/region_errors.h"
 
@@ -61,6 +62,9 @@ void bindBase(py::module_& m) {
       raise(error);
     }
   });
+
+  py::class_<KeptMemory>(m, "KeptMemory", "While one lives, freed memory stays with the process for further use.")
+      .def(py::init<>());
 
   py::class_<Progress>(m, "Progress", "Watched from one thread, worked under in another.")
       .def(py::init<>())
