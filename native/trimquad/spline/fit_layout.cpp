@@ -303,21 +303,20 @@ class LayoutFit : public FitRounds {
     }
     const auto before = space_.charts;
     bool any = false;
-    for (int c = 0; c < int(space_.charts.size()); ++c) {
-      if (failingIn[c].empty()) continue;
-      std::vector<SurfaceSample> here;
-      std::vector<int> number(samples_.size(), -1);
-      for (std::size_t i = 0; i < samples_.size(); ++i)
-        if (samples_[i].chart == c) {
-          number[i] = int(here.size());
-          here.push_back(samples_[i]);
-        }
-      std::vector<std::array<int, 3>> cells;
-      for (const auto& cell : cells_)
-        if (number[cell[0]] >= 0 && number[cell[1]] >= 0 && number[cell[2]] >= 0)
-          cells.push_back({number[cell[0]], number[cell[1]], number[cell[2]]});
-      any |= refineKnots(space_.charts[c], here, cells, failingIn[c], narrowest_);
+    // By chart: its samples, and the cells that lie in it as a whole.
+    std::vector<std::vector<SurfaceSample>> samplesIn(space_.charts.size());
+    std::vector<std::vector<std::array<int, 3>>> cellsIn(space_.charts.size());
+    std::vector<int> number;
+    for (const auto& s : samples_) {
+      number.push_back(int(samplesIn[s.chart].size()));
+      samplesIn[s.chart].push_back(s);
     }
+    for (const auto& [i, j, k] : cells_)
+      if (const int c = samples_[i].chart; samples_[j].chart == c && samples_[k].chart == c)
+        cellsIn[c].push_back({number[i], number[j], number[k]});
+    for (std::size_t c = 0; c < space_.charts.size(); ++c)
+      if (!failingIn[c].empty())
+        any |= refineKnots(space_.charts[c], samplesIn[c], cellsIn[c], failingIn[c], narrowest_);
     for (const auto& [chart, axis, at] : middles) {
       const auto widthOf = [&](const SplineSpace& space) {
         const SplineLine& line = axis == 0 ? space.u : space.v;
