@@ -48,6 +48,9 @@ constexpr int kPatienceFar = 1;
 constexpr double kFar = 5;
 /// With so few poles that says nothing yet.
 constexpr int kFewPoles = 1000;
+/// Multiples of the poles of the closest surfaces so far, and of the closest that are turned over nowhere, at
+/// which a fit that came no closer since is given up: where it folds, more knots fold it more.
+constexpr double kVainPoles = 3, kVainCleanPoles = 4;
 /// Several surfaces with so many poles are to be within so many tolerances: what asks for that many is noise,
 /// or creases across charts, and the rest of the way takes many times as long.
 constexpr int kManyPoles = 40000;
@@ -111,6 +114,8 @@ FittedSurface FitRounds::rounds() {
     if (slides_ && corrections_ > 0 && !deviation_.turnedOver.empty()) stopSliding();
     if (rounds_ == 1) start_ = best_ = deviation_.max;
     best_ = std::min(best_, deviation_.max);
+    closest_.note(deviation_.max, poles());
+    if (deviation_.turnedOver.empty()) closestClean_.note(deviation_.max, poles());
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
     if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0)) {
       if (smoothings_.empty()) return economised();
@@ -456,7 +461,10 @@ void FitRounds::refine() {
   if (idle_ > 0) giveWay();
   const bool far = policy_.several && best_ > kFar * tolerance_ && poles() > kFewPoles;
   const bool hopeless = policy_.several && poles() > kManyPoles && best_ > kNearWithMany * tolerance_;
-  if (hopeless || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > policy_.maxPoles)
+  const bool vain = poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
+                                            poles() > kVainCleanPoles * closestClean_.poles);
+  if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() ||
+      poles() > policy_.maxPoles)
     throw unreachable();
 }
 

@@ -134,6 +134,15 @@ class FitRounds {
   std::vector<FitPlace> feet_, ofMap_;  ///< by sample: where its foot lies; where the map has it
   std::vector<double> emphasis_;        ///< by sample: factor of its weight
   State beforeCorrection_;
+  /// The smallest deviation so far, and the poles that it took.
+  struct Closest {
+    double deviation = std::numeric_limits<double>::infinity();
+    int poles = std::numeric_limits<int>::max();
+    void note(double other, int otherPoles) {
+      if (other < deviation) *this = {other, otherPoles};
+    }
+  };
+  Closest closest_, closestClean_;  ///< the latter among those that are turned over nowhere
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
   bool slides_;            ///< samples whose parameters are their feet, along the surface
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
