@@ -37,6 +37,7 @@ def trim(result, progress):
     native = load()
     started = time.monotonic()
     elsewhere = 0.0
+    checks = native.FaceChecks()
     while any(r.fitted is not None for r in result.regions):
         try:
             with progress.stage("trim") as native_progress:
@@ -49,7 +50,7 @@ def trim(result, progress):
                     result.options.threads,
                 )
                 result.native_shape = native.assemble(result.spline)
-            if not _refit_faulty(result, progress):
+            if not _refit_faulty(result, checks, progress):
                 break
             result.spline = None  # its faces are at fault
         except Error as error:
@@ -81,13 +82,13 @@ def trim(result, progress):
         raise cancelled()
 
 
-def _refit_faulty(result, progress):
-    """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any."""
+def _refit_faulty(result, checks, progress):
+    """Fits regions again whose faces OpenCASCADE finds at fault (FaceChecks). Whether there were any."""
     faulty = {}  # index of the region: charts and a fault
     faces = result.spline.faces
     folded = [r.fitted.folded_charts if r.fitted is not None else () for r in result.regions]
     folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
-    for face, faults in zip(faces, load().face_faults(result.spline, folded_faces, result.options.threads)):
+    for face, faults in zip(faces, checks.faults(result.spline, folded_faces, result.options.threads)):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
     if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
@@ -96,7 +97,8 @@ def _refit_faulty(result, progress):
     for index, found in faulty.items():
         item = result.regions[index]
         advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
-        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name)))
+        charts = {chart for chart, fault in found if "Face" in fault}  # else their edges alone are
+        at_fault.append((item, charts, Error("stage", "fit", advice, item.name)))
     _refit_all(at_fault, result, progress)
     return bool(faulty)
 

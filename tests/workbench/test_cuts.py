@@ -136,9 +136,10 @@ def leading_edge(radius):
 def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, radius, cut):
     native = joining.load()
 
-    def face_faults(spline, folded, threads):
-        whole = len(spline.faces) == 1 and spline is first
-        return [["SelfIntersect"] if whole else [] for _ in spline.faces]
+    class FaceChecks:
+        def faults(self, spline, folded, threads):
+            whole = len(spline.faces) == 1 and spline is first
+            return [["Face1: SelfIntersect"] if whole else [] for _ in spline.faces]
 
     def trim_model(*arguments):
         nonlocal first
@@ -147,7 +148,7 @@ def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, rad
         return model
 
     first = None
-    stand_ins = {"face_faults": face_faults, "trim_model": trim_model}
+    stand_ins = {"FaceChecks": FaceChecks, "trim_model": trim_model}
 
     class Native:
         def __getattr__(self, name):

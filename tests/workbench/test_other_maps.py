@@ -89,8 +89,11 @@ def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tri
         def __getattr__(self, name):
             return getattr(native, name)
 
-        def face_faults(self, model, folded, threads):
-            return [["crosses itself"] if len(model.faces) == 1 else [] for _ in model.faces]
+        def FaceChecks(self):
+            return self
+
+        def faults(self, model, folded, threads):
+            return [["Face1: SelfIntersect"] if len(model.faces) == 1 else [] for _ in model.faces]
 
     monkeypatch.setattr(joining, "load", FaultySingles)
     monkeypatch.setattr(joining, "REFITS", ())

@@ -22,9 +22,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <map>
-#include <set>
 
-#include "trimquad/base/parallel.h"
 #include "trimquad/brep/occt_guard.h"
 
 namespace trimquad {
@@ -177,29 +175,6 @@ class Assembly {
   std::vector<TopoDS_Face> faces_;
 };
 
-/// The pairs of faces that share an edge, one of them at least among these; ascending.
-std::set<std::pair<int, int>> neighboursOf(const SplineModel& model, const std::vector<int>& faces) {
-  std::vector<std::vector<int>> users(model.edges.size());
-  for (int f = 0; f < int(model.faces.size()); ++f)
-    for (const auto& loop : model.faces[f].loops)
-      for (const auto& coedge : loop) users[coedge.edge.index].push_back(f);
-  std::set<std::pair<int, int>> result;
-  for (const int f : faces)
-    for (const auto& loop : model.faces.at(f).loops)
-      for (const auto& coedge : loop)
-        for (const int other : users[coedge.edge.index])
-          if (other != f) result.insert(std::minmax(f, other));
-  return result;
-}
-
-TopoDS_Compound compound(const std::vector<TopoDS_Face>& faces) {
-  TopoDS_Compound result;
-  BRep_Builder builder;
-  builder.MakeCompound(result);
-  for (const auto& face : faces) builder.Add(result, face);
-  return result;
-}
-
 }  // namespace
 
 Shape assemble(const SplineModel& model) {
@@ -223,27 +198,6 @@ std::vector<int> faceOrder(const SplineModel& model) {
     for (int f = 0; f < int(assembly.faces().size()); ++f)
       if (const int place = counted.FindIndex(assembly.faces()[f])) order[place - 1] = f;
     return order;
-  });
-}
-
-std::vector<std::vector<std::string>> faceFaults(const SplineModel& model, const std::vector<int>& folded,
-                                                 int threads) {
-  return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
-    const Assembly assembly(model);
-    const auto& faces = assembly.faces();
-    std::vector<std::vector<std::string>> result(faces.size());
-    parallelEach(int(faces.size()), threads, [&](int f) { result[f] = faults(Shape(faces[f])); });
-    std::vector<std::pair<int, int>> pairs;
-    for (const auto& [a, b] : neighboursOf(model, folded))
-      if (result[a].empty() && result[b].empty()) pairs.push_back({a, b});
-    std::vector<std::vector<std::string>> together(pairs.size());
-    parallelEach(int(pairs.size()), threads, [&](int k) {
-      together[k] = faults(Shape(compound({faces[pairs[k].first], faces[pairs[k].second]})));
-    });
-    for (std::size_t k = 0; k < pairs.size(); ++k)
-      for (const int face : {pairs[k].first, pairs[k].second})
-        result[face].insert(result[face].end(), together[k].begin(), together[k].end());
-    return result;
   });
 }
 

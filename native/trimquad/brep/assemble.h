@@ -27,11 +27,6 @@ std::vector<int> faceOrder(const SplineModel& model);
 /// touch without meeting in an edge
 std::vector<std::string> faults(const Shape& shape, bool crossings = true);
 
-/// The same for each face of the model alone, in the model's order; of faces with folds, by index, also
-/// together with each face that they share an edge with, which counts for both. On up to `threads` threads.
-std::vector<std::vector<std::string>> faceFaults(const SplineModel& model,
-                                                 const std::vector<int>& folded = {}, int threads = 1);
-
 /// Writes STEP AP242 in millimetres, with the curves on the surfaces. The same shape gives the same bytes:
 /// the header carries a fixed date. Throws Error(Input, "write") where the file cannot be written whole.
 void writeStep(const Shape& shape, const std::string& path);

@@ -1,4 +1,5 @@
 #include "trimquad/brep/assemble.h"
+#include "trimquad/brep/face_checks.h"
 
 // Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
 #include "support/trim_samples.h"
@@ -194,9 +195,9 @@ TEST(FaceFaults, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
     for (const int j : {-1, 0, 1})
       spiked.poles[spiked.countU / 2 + i + spiked.countU * (spiked.countV / 2 + j)] += 2 * across;
   const std::vector<std::string> none;
-  for (const auto& faults : faceFaults(model)) EXPECT_EQ(faults, none) << "each alone has none";
+  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_EQ(faults, none) << "each alone has none";
   for (const int folded : {0, 1})
-    for (const auto& faults : faceFaults(model, {folded})) EXPECT_NE(faults, none);
+    for (const auto& faults : FaceChecks().faults(model, {folded}, 2)) EXPECT_NE(faults, none);
 }
 
 TEST(WriteStep, sameShapeSameBytes) {
