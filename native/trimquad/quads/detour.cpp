@@ -5,16 +5,18 @@
 namespace trimquad {
 namespace {
 
+using PointsBeyond = std::vector<std::optional<std::vector<int>>>;
+
 class Detours {
  public:
-  Detours(const SimpleLoops& cell, const std::vector<bool>& movable)
-      : loops_(cell.loops), spurs_(cell.spurs), movable_(movable) {}
+  Detours(const SimpleLoops& cell, const PointsBeyond& beyond)
+      : loops_(cell.loops), spurs_(cell.spurs), beyond_(beyond) {}
 
   std::optional<Detour> shortest() const {
     std::optional<Detour> best;
     for (size_t hole = 1; hole < loops_.size(); ++hole)
       for (size_t side = 0; side < loops_[0].size(); ++side) {
-        if (!movable_[side]) continue;
+        if (!beyond_[side]) continue;
         const auto detour = through(side, hole);
         if (detour && (!best || detour->length < best->length)) best = detour;
       }
@@ -24,12 +26,14 @@ class Detours {
  private:
   const PlanarCorner& corner(size_t k) const { return loops_[0][k % loops_[0].size()]; }
 
-  /// The corners of a hole that a corner of the outer loop sees, the two nearest ones.
+  /// The corners of a hole that a corner of the outer loop sees, the two nearest ones. Not inner ones, which
+  /// would get an edge more.
   std::vector<size_t> nearest(size_t from, const PlanarLoop& hole) const {
     from %= loops_[0].size();
     const PlanarCorner& start = corner(from);
     std::vector<std::pair<WideQuanta, size_t>> sorted;
-    for (size_t k = 0; k < hole.size(); ++k) sorted.push_back({squaredDistance(start, hole[k]), k});
+    for (size_t k = 0; k < hole.size(); ++k)
+      if (!hole[k].inner) sorted.push_back({squaredDistance(start, hole[k]), k});
     std::sort(sorted.begin(), sorted.end());
     std::vector<size_t> seen;
     for (const auto& [distance, k] : sorted) {
@@ -57,9 +61,12 @@ class Detours {
   std::optional<Detour> through(size_t side, size_t h) const {
     const PlanarLoop& hole = loops_[h];
     const PlanarCorner &start = corner(side), &end = corner(side + 1);
-    // A hole that touches the outer loop is met there already.
     const size_t atStart = positionIn(hole, start.point), atEnd = positionIn(hole, end.point);
-    if (atStart == hole.size() && atEnd == hole.size() && touchesOuter(hole)) return {};
+    const bool beside = atStart < hole.size() || atEnd < hole.size();
+    const auto touches = touchesOuter(hole);
+    const bool inner = std::any_of(touches.begin(), touches.end(), [](const auto& c) { return c.inner; });
+    // It is met there already. But an inner point would lose an edge.
+    if (!touches.empty() && (inner ? beside || touches.size() > 1 : !beside)) return {};
     const auto entries = atStart < hole.size() ? std::vector{atStart} : nearest(side, hole);
     const auto exits = atEnd < hole.size() ? std::vector{atEnd} : nearest(side + 1, hole);
     std::optional<Detour> best;
@@ -73,15 +80,23 @@ class Detours {
     return best;
   }
 
-  bool touchesOuter(const PlanarLoop& hole) const {
-    return std::any_of(hole.begin(), hole.end(), [&](const PlanarCorner& c) {
-      return positionIn(loops_[0], c.point) < loops_[0].size();
-    });
+  std::vector<PlanarCorner> touchesOuter(const PlanarLoop& hole) const {
+    std::vector<PlanarCorner> touches;
+    for (const PlanarCorner& c : hole)
+      if (positionIn(loops_[0], c.point) < loops_[0].size()) touches.push_back(c);
+    return touches;
   }
 
-  /// Whether what comes to the other cell is a polygon without other holes, and no spur leads there.
+  /// Whether what comes to the other cell is a polygon without other holes that meets the rest of it in the
+  /// side only, and no spur leads there.
   bool isFree(const Detour& detour) const {
     PlanarLoop between = stretch(loops_[detour.hole], detour.exit, detour.entry);
+    const std::vector<int>& beyond = *beyond_[detour.side];
+    for (const PlanarCorner& c : between) {
+      if (c.point == corner(detour.side).point || c.point == corner(detour.side + 1).point) continue;
+      if (positionIn(loops_[0], c.point) < loops_[0].size()) return false;
+      if (std::find(beyond.begin(), beyond.end(), c.point) != beyond.end()) return false;
+    }
     for (size_t k = 1; k + 1 < between.size(); ++k)
       for (const Spur& spur : spurs_)
         if (between[k].point == spur[0].point || between[k].point == spur[1].point) return false;
@@ -95,13 +110,13 @@ class Detours {
 
   const std::vector<PlanarLoop>& loops_;
   const std::vector<Spur>& spurs_;
-  const std::vector<bool>& movable_;
+  const PointsBeyond& beyond_;
 };
 
 }  // namespace
 
-std::optional<Detour> shortestDetour(const SimpleLoops& cell, const std::vector<bool>& movable) {
-  return Detours(cell, movable).shortest();
+std::optional<Detour> shortestDetour(const SimpleLoops& cell, const PointsBeyond& beyond) {
+  return Detours(cell, beyond).shortest();
 }
 
 }  // namespace trimquad

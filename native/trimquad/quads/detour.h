@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "trimquad/quads/planar_loop.h"
 
@@ -16,8 +17,10 @@ struct Detour {
 };
 
 /// The shortest one that crosses nothing and has no other hole between itself and the side. Where a hole and
-/// the outer loop have a corner in common, only the sides beside it can be led through that hole. Exact.
-/// \param movable  by side of the outer loop
-std::optional<Detour> shortestDetour(const SimpleLoops& cell, const std::vector<bool>& movable);
+/// the outer loop have a corner in common, only the sides beside it can be led through that hole; but if it
+/// is an inner one, only the others, and the loop then comes through it twice. Exact. \param beyond  by side
+/// of the outer loop: the points of the polygon beyond, if it can be led elsewhere
+std::optional<Detour> shortestDetour(const SimpleLoops& cell,
+                                     const std::vector<std::optional<std::vector<int>>>& beyond);
 
 }  // namespace trimquad

@@ -54,9 +54,9 @@ class DiskMaker {
     const CellId id = cells_[k].cell;
     SimpleLoops simple = dividedWherePinched(cells_[k].loops);
     auto& outer = simple.loops[0];
-    std::vector<bool> movable;
-    for (size_t i = 0; i < outer.size(); ++i) movable.push_back(sides_->isMovable(id, sideOf(outer, i)));
-    const auto detour = shortestDetour(simple, movable);
+    std::vector<std::optional<std::vector<int>>> beyond;
+    for (size_t i = 0; i < outer.size(); ++i) beyond.push_back(pointsBeyond(id, sideOf(outer, i)));
+    const auto detour = shortestDetour(simple, beyond);
     if (!detour) return false;
 
     const Side side = sideOf(outer, detour->side);
@@ -70,17 +70,47 @@ class DiskMaker {
     moveArea(id, other, doubleArea(between), doubleArea(simple.loops));
     moveBoundary(id, other, nearBank);
     addBank(other, ends, nearBank);
+    const auto touch = std::find_if(hole.begin(), hole.end(), [&](const PlanarCorner& corner) {
+      return corner.inner && positionIn(outer, corner.point) < outer.size();
+    });
+    const std::optional<int> pinch = touch == hole.end() ? std::nullopt : std::optional(touch->point);
     outer = withWay(outer, ends[0], ends[1], farBank);
     simple.loops.erase(simple.loops.begin() + long(detour->hole));
     std::vector<PlanarLoop> apart;
     cells_[k].loops = joinedWherePinched(std::move(simple), apart);
+    if (pinch) divideAt(*pinch, cells_[k].loops, apart);
     for (auto& part : apart) separate(k, std::move(part));
     setLoops(cells_[k]);
     return true;
   }
 
-  /// A part of a cell that has no more than a side in common with the rest becomes a cell, with the holes
-  /// inside it.
+  /// Of the cell beyond a side, if that can be led elsewhere.
+  std::optional<std::vector<int>> pointsBeyond(CellId cell, const Side& side) const {
+    if (!sides_->isMovable(cell, side)) return {};
+    std::vector<int> points;
+    for (const auto& loop : quads_.cells[sides_->across(side)->index].loops)
+      for (const auto point : loop) points.push_back(point.index);
+    return points;
+  }
+
+  /// Where a loop comes through a point twice, `apart` gets what lies between.
+  static void divideAt(int point, std::vector<PlanarLoop>& loops, std::vector<PlanarLoop>& apart) {
+    const auto isThere = [&](const PlanarCorner& corner) { return corner.point == point; };
+    std::vector<PlanarLoop> parts;
+    for (auto* among : {&loops, &apart})
+      for (auto& loop : *among) {
+        const auto first = std::find_if(loop.begin(), loop.end(), isThere);
+        if (first == loop.end()) continue;
+        const auto second = std::find_if(first + 1, loop.end(), isThere);
+        if (second == loop.end()) continue;
+        parts.emplace_back(first, second);
+        loop.erase(first, second);
+      }
+    apart.insert(apart.end(), parts.begin(), parts.end());
+  }
+
+  /// A part of a cell that has no more than a side or a point in common with the rest becomes a cell, with
+  /// the holes inside it.
   void separate(size_t k, PlanarLoop part) {
     const CellId from = cells_[k].cell, id{int(quads_.cells.size())};
     quads_.cells.push_back(quads_.cells[from.index]);

@@ -20,7 +20,7 @@ struct PlanarCell {
 /// diagonals cannot all end on the surface's boundary, a side of the cell is led through the hole first: the
 /// two cells that met in a -> b meet in a -> hole and hole -> b instead, and each has one bank of the hole. A
 /// side that is an aligned edge stays; a cell that has no other is cut by diagonals to inner points. A cell
-/// that reaches around a hole to both sides of a side becomes two there.
+/// that reaches around a hole to both sides of a side, or of an inner point, becomes two there.
 void makeDisks(QuadMesh& quads, std::vector<PlanarCell> cells);
 
 }  // namespace trimquad

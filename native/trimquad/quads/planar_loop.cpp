@@ -61,9 +61,11 @@ void divideAlongSpurs(PlanarLoop loop, SimpleLoops& simple, std::vector<PlanarLo
 
 void divideAtPoints(const PlanarLoop& loop, std::vector<PlanarLoop>& parts) {
   PlanarLoop open;
-  for (const auto& corner : loop) {
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const PlanarCorner& corner = loop[k];
     const std::size_t before = positionIn(open, corner.point);
-    if (before < open.size() && !corner.inner) {
+    const bool polygons = open.size() >= before + 3 && before + loop.size() - k >= 3;
+    if (before < open.size() && (!corner.inner || polygons)) {
       parts.emplace_back(open.begin() + long(before), open.end());
       open.resize(before);
     }

@@ -53,7 +53,7 @@ struct SimpleLoops {
   std::vector<Spur> spurs;
 };
 
-/// Divides loops along their spurs, and where they come through a point other than an inner one twice.
+/// Divides loops along their spurs, and where they come through a point twice.
 SimpleLoops dividedWherePinched(const std::vector<PlanarLoop>& loops);
 /// The way back: loops with a common point, or with the two ends of a spur, become one that comes through
 /// these twice. Spurs with both ends in one loop divide it; `apart` gets the parts beyond them.

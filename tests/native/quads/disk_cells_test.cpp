@@ -177,3 +177,9 @@ TEST(DiskCells, cellsThatReachAroundAHoleToBothSidesOfASide) {
     }
   EXPECT_GT(divided, 20);
 }
+
+TEST(DiskCells, aCellThatComesThroughAnInnerPointTwiceIsDivided) {
+  const auto map = shiftedPlate(6, {{3, 2, 1, 1, {-1, -1}}}, 0.428331, {0.137578, 0.079842});
+  ASSERT_TRUE(map);
+  extractSound(*map);
+}

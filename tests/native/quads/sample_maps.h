@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -124,6 +126,55 @@ inline MappedSoup wrapped(int columns, int rows, double du, double dv, bool toru
                  {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   return mapped;
+}
+
+/// A rectangle left out of a sheet, in cells, around which the chart is shifted by a grid vector.
+struct ShiftedHole {
+  int column, row, columns, rows;
+  std::array<int, 2> shift;
+
+  Eigen::Vector2d center() const { return {column + columns / 2., row + rows / 2.}; }
+};
+
+/// n x n cells of side `step` quads with holes, turned and moved in the chart. Without a value where the
+/// shifts fold a triangle over.
+inline std::optional<GridMap> shiftedPlate(int n, const std::vector<ShiftedHole>& holes, double step,
+                                           Eigen::Vector2d offset, double turn = 0) {
+  const auto soup = sheet(
+      n, n, [](int i, int j) { return Eigen::Vector2d(i, j); },
+      [&](int i, int j) {
+        return std::any_of(holes.begin(), holes.end(), [&](const ShiftedHole& h) {
+          return i >= h.column && i < h.column + h.columns && j >= h.row && j < h.row + h.rows;
+        });
+      });
+  const auto turns = [&](const ShiftedHole& hole, int v) {
+    const Eigen::Vector2d x = soup.points[v].head<2>() - hole.center();
+    return std::atan2(x.y(), x.x()) / (2 * M_PI);
+  };
+  GridMap map;
+  map.mesh = buildSurfaceMesh(soup);
+  map.scale.bits = 30;
+  map.corner.resize(map.mesh.n_halfedges());
+  std::vector<FixedVector> at;
+  for (int v = 0; v < int(soup.points.size()); ++v) {
+    Eigen::Vector2d x = offset + step * (Eigen::Rotation2Dd(turn) * soup.points[v].head<2>());
+    for (const auto& hole : holes) x += turns(hole, v) * Eigen::Vector2d(hole.shift[0], hole.shift[1]);
+    at.push_back(map.scale.round(x));
+  }
+  for (const auto f : map.mesh.faces()) {
+    const int first = soup.triangles[f.idx()][0];
+    for (const auto h : map.mesh.fh_range(f)) {
+      const int v = map.mesh.from_vertex_handle(h).idx();
+      FixedVector& x = map.corner[h.idx()] = at[v];
+      for (const auto& hole : holes) {  // all corners on one branch of the angle
+        const Quanta whole = map.scale.one() * std::llround(turns(hole, first) - turns(hole, v));
+        x = x + FixedVector{whole * hole.shift[0], whole * hole.shift[1]};
+      }
+    }
+    const auto h = map.mesh.halfedge_handle(f), next = map.mesh.next_halfedge_handle(h);
+    if (orientation(map.from(h), map.from(next), map.to(next)) <= 0) return {};
+  }
+  return map;
 }
 
 /// The same map with every triangle in a chart of its own, turned and shifted by grid automorphisms.
