@@ -118,6 +118,33 @@ def test_a_region_that_cannot_be_trimmed_is_cut(monkeypatch):
     assert result.shape.isValid() and len(result.shape.Faces) == 8
 
 
+def test_all_regions_that_cannot_be_trimmed_are_fitted_again_before_the_next_trim(monkeypatch):
+    import Part
+
+    native, trims, fitted_again = joining.load(), [], []
+
+    def trim_model(*arguments):
+        trims.append(arguments)
+        if len(trims) == 1:
+            error = Error("stage", "fit", "trims cross", "region 2")
+            error.others = [Error("stage", "fit", "trims cross", "region 4, Edge3")]
+            raise error
+        return native.trim_model(*arguments)
+
+    class Native:
+        def __getattr__(self, name):
+            return trim_model if name == "trim_model" else getattr(native, name)
+
+    def refit(item, charts, error, result, progress):
+        fitted_again.append((item.name, error.where))
+
+    monkeypatch.setattr(joining, "_refit", refit)
+    monkeypatch.setattr(joining, "load", Native)
+    result = trimquad.convert(Part.makeBox(1, 2, 3), trimquad.Options(quads=200))
+    assert not result.failed and len(trims) == 2
+    assert sorted(fitted_again) == [("region 2", "region 2"), ("region 4", "region 4, Edge3")]
+
+
 def leading_edge(radius):
     """Upper and lower side of a leading edge, 1 deep and 2 long: a shell of two faces."""
     import FreeCAD

@@ -1,5 +1,4 @@
 #include "trimquad/brep/assemble.h"
-#include "trimquad/brep/face_checks.h"
 
 // Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
 #include "support/trim_samples.h"
@@ -181,23 +180,6 @@ TEST(Assemble, aGapIsFound) {
   auto model = rectangleSheet().trim();
   for (auto& pole : model.edges[0].curve.poles) pole[2] += 1e-4;
   EXPECT_FALSE(faults(assemble(model)).empty());
-}
-
-TEST(FaceFaults, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
-  auto model = bulgedBox(0.8, {1, 5}).trim();
-  const auto middle = [](const SplineSurface& s) -> Eigen::Vector3d {
-    return s.point((s.firstU() + s.lastU()) / 2, (s.firstV() + s.lastV()) / 2);
-  };
-  // A spike of the second face, away from its edges, through the middle of the first.
-  const Eigen::Vector3d across = middle(model.faces[0].surface) - middle(model.faces[1].surface);
-  auto& spiked = model.faces[1].surface;
-  for (const int i : {-1, 0, 1})
-    for (const int j : {-1, 0, 1})
-      spiked.poles[spiked.countU / 2 + i + spiked.countU * (spiked.countV / 2 + j)] += 2 * across;
-  const std::vector<std::string> none;
-  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_EQ(faults, none) << "each alone has none";
-  for (const int folded : {0, 1})
-    for (const auto& faults : FaceChecks().faults(model, {folded}, 2)) EXPECT_NE(faults, none);
 }
 
 TEST(WriteStep, sameShapeSameBytes) {

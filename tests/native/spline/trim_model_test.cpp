@@ -172,6 +172,33 @@ TEST(TrimModel, sheetsThatCannotMoveMeetLooselyAndSaySo) {
   EXPECT_LT(gaps.edgeTolerance, 3e-4);
 }
 
+TEST(TrimModel, allRegionsThatCannotBeTrimmedAreNamed) {
+  auto sheets = tangentSheets([](double, double) { return 0.0; });
+  for (auto& fit : sheets.fits)
+    for (auto& pole : fit->surface.poles) pole[2] += 20;
+  try {
+    sheets.trim();
+    FAIL();
+  } catch (const RegionErrors& error) {
+    ASSERT_EQ(error.others().size(), 1u);
+    const std::string &first = error.where(), &second = error.others()[0].where();
+    EXPECT_EQ(first.substr(0, first.find(',')), sheets.model.regions[0].name);
+    EXPECT_EQ(second.substr(0, second.find(',')), sheets.model.regions[1].name);
+  }
+}
+
+TEST(TrimModel, theNumberOfThreadsChangesNothing) {
+  auto sheets = tangentSheets(slowlyVarying);
+  const auto one = sheets.trim(1), three = sheets.trim(3);
+  ASSERT_EQ(one.edges.size(), three.edges.size());
+  for (std::size_t e = 0; e < one.edges.size(); ++e) {
+    EXPECT_EQ(one.edges[e].curve.knots, three.edges[e].curve.knots);
+    EXPECT_EQ(one.edges[e].curve.poles, three.edges[e].curve.poles);
+  }
+  for (std::size_t f = 0; f < one.faces.size(); ++f)
+    EXPECT_EQ(one.faces[f].surface.poles, three.faces[f].surface.poles);
+}
+
 TEST(TrimModel, jaggedBoundaryIsSmoothedWithinTheTolerance) {
   auto sheet = roundSheet();
   sheet.tolerance = 0.02;

@@ -1,0 +1,51 @@
+#include "trimquad/brep/face_checks.h"
+
+// Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
+#include "support/trim_samples.h"
+
+#include <gtest/gtest.h>
+
+namespace trimquad {
+namespace {
+
+using namespace test;
+
+using Faults = std::vector<std::vector<std::string>>;
+
+TEST(FaceChecks, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
+  auto model = bulgedBox(0.8, {1, 5}).trim();
+  const auto middle = [](const SplineSurface& s) -> Eigen::Vector3d {
+    return s.point((s.firstU() + s.lastU()) / 2, (s.firstV() + s.lastV()) / 2);
+  };
+  // A spike of the second face, away from its edges, through the middle of the first.
+  const Eigen::Vector3d across = middle(model.faces[0].surface) - middle(model.faces[1].surface);
+  auto& spiked = model.faces[1].surface;
+  for (const int i : {-1, 0, 1})
+    for (const int j : {-1, 0, 1})
+      spiked.poles[spiked.countU / 2 + i + spiked.countU * (spiked.countV / 2 + j)] += 2 * across;
+  const std::vector<std::string> none;
+  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_EQ(faults, none) << "each alone has none";
+  for (const int folded : {0, 1})
+    for (const auto& faults : FaceChecks().faults(model, {folded}, 2)) EXPECT_NE(faults, none);
+}
+
+TEST(FaceChecks, findAgainWhatIsStillThereAndWhatIsNew) {
+  auto model = bulgedBox(0.8).trim();
+  FaceChecks checks;
+  const Faults none(model.faces.size());
+  EXPECT_EQ(checks.faults(model, {}, 2), none);
+  auto bent = model;
+  for (auto& pole : bent.edges[0].curve.poles) pole[2] += 1e-2;
+  const Faults found = checks.faults(bent, {}, 2);
+  EXPECT_NE(found, none);
+  EXPECT_EQ(checks.faults(bent, {}, 1), found);
+  EXPECT_EQ(FaceChecks().faults(bent, {}, 1), found);
+  EXPECT_EQ(checks.faults(model, {}, 1), none);
+  // The vertices count as well.
+  auto loose = model;
+  loose.vertices[0].point[0] += 1e-2;
+  EXPECT_NE(checks.faults(loose, {}, 1), none);
+}
+
+}  // namespace
+}  // namespace trimquad
