@@ -63,7 +63,8 @@ void bindBase(py::module_& m) {
     }
   });
 
-  py::class_<KeptMemory>(m, "KeptMemory", "While one lives, freed memory stays with the process for further use.")
+  py::class_<KeptMemory>(m, "KeptMemory",
+                         "While one lives, freed memory stays with the process for further use.")
       .def(py::init<>());
 
   py::class_<Progress>(m, "Progress", "Watched from one thread, worked under in another.")

@@ -84,12 +84,13 @@ void bindBrep(py::module_& m) {
   m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
-  py::class_<FaceChecks>(m, "FaceChecks", "Checks of faces, which are not repeated while these stay the same.")
+  py::class_<FaceChecks>(m, "FaceChecks",
+                         "Checks of faces, which are not repeated while these stay the same.")
       .def(py::init<>())
       .def("faults", &FaceChecks::faults, py::arg("spline"), py::arg("folded"), py::arg("threads"),
            Released(),
-           "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone; with those "
-           "in `folded` (indices) also together with each neighbour");
+           "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone; with "
+           "those in `folded` (indices) also together with each neighbour");
   m.def("face_order", &faceOrder, py::arg("spline"), Released(),
         "by face of the assembled shape, its index among the spline's");
   m.def("deviation_maps", &deviationMapsOf, py::arg("spline"), py::arg("regions"), py::kw_only(),

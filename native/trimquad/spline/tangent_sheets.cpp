@@ -117,8 +117,8 @@ void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<S
 }  // namespace
 
 std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                                   const std::vector<SheetCorner>& corners,
-                                   const std::vector<char>& mayMove, double width, double gap,
+                                   const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
+                                   double width, double gap,
                                    const std::function<bool(int, const SplineSurface&)>& accepts,
                                    const Progress& progress) {
   const auto rank = [&](int sheet) { return std::pair(bool(mayMove[sheet]), sheet); };

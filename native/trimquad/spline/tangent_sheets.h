@@ -21,13 +21,13 @@ struct TangentCurve {
 inline constexpr double kTangentGap = 2e-7;
 
 /// Moves sheets so that they agree with the others on the curves along which these touch them, and nearly in
-/// a strip around, and in the corners in which such curves end: of two sheets the later one, or the one that may move. \param mayMove by sheet \param
-/// width   half of the strip's, model units \param gap     what may be left between the sheets, model units
-/// \param accepts (sheet, new surface) whether it may become so
+/// a strip around, and in the corners in which such curves end: of two sheets the later one, or the one that
+/// may move. \param mayMove by sheet \param width   half of the strip's, model units \param gap     what may
+/// be left between the sheets, model units \param accepts (sheet, new surface) whether it may become so
 /// Returns the sheets that have moved, ascending.
 std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                                   const std::vector<SheetCorner>& corners,
-                                   const std::vector<char>& mayMove, double width, double gap,
+                                   const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
+                                   double width, double gap,
                                    const std::function<bool(int, const SplineSurface&)>& accepts,
                                    const Progress& progress);
 

@@ -202,7 +202,8 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
   if (curve.sides.size() != 2) {
     for (std::size_t k = 0; k < curve.sides.size(); ++k) {
       const double most = tolerances[curve.sides[k].run->region], onSheet = kCloseness * most;
-      const CurveCloseness closeness{onSheet, curvePieces_->isPolyline(id) ? kChainCloseness * most : onSheet};
+      const CurveCloseness closeness{onSheet,
+                                     curvePieces_->isPolyline(id) ? kChainCloseness * most : onSheet};
       result.push_back(
           {freeEdge(curve.sampled[k], curve.sides[k], closeness, progress_), {&curve.sides[k]}, false});
     }

@@ -24,7 +24,8 @@ TEST(FaceChecks, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
     for (const int j : {-1, 0, 1})
       spiked.poles[spiked.countU / 2 + i + spiked.countU * (spiked.countV / 2 + j)] += 2 * across;
   const std::vector<std::string> none;
-  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_EQ(faults, none) << "each alone has none";
+  for (const auto& faults : FaceChecks().faults(model, {}, 1))
+    EXPECT_EQ(faults, none) << "each alone has none";
   for (const int folded : {0, 1})
     for (const auto& faults : FaceChecks().faults(model, {folded}, 2)) EXPECT_NE(faults, none);
 }

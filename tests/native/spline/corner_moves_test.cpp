@@ -34,8 +34,7 @@ struct Around {
     }
   }
   std::vector<int> meet(const std::vector<char>& mayMove) {
-    return meetInCorners(
-        sheets, {corner}, mayMove, 1e-9, [](int, const SplineSurface&) { return true; }, {});
+    return meetInCorners(sheets, {corner}, mayMove, 1e-9, [](int, const SplineSurface&) { return true; }, {});
   }
   SplineSurface::Jet jetAt(int k, const Eigen::Vector3d& p) const {
     return sheets[k].jet(sheets[k].footPoint(p, {0, 0}));
@@ -82,13 +81,12 @@ TEST(CornerMoves, LeaveThreeSheetsAloneThatHaveACommonPoint) {
 TEST(CornerMoves, LeaveSheetsAloneThatMayNotBecomeWhatTheyWould) {
   Around around({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}});
   int asked = 0;
-  const auto moved = meetInCorners(
-      around.sheets, {around.corner}, {1, 1, 1, 1}, 1e-9,
-      [&](int, const SplineSurface&) {
-        ++asked;
-        return false;
-      },
-      {});
+  const auto moved = meetInCorners(around.sheets, {around.corner}, {1, 1, 1, 1}, 1e-9,
+                                   [&](int, const SplineSurface&) {
+                                     ++asked;
+                                     return false;
+                                   },
+                                   {});
   EXPECT_TRUE(moved.empty());
   EXPECT_EQ(asked, 8);  // with the tangent plane and without it
 }
