@@ -49,7 +49,8 @@ constexpr double kFar = 5;
 /// With so few poles that says nothing yet.
 constexpr int kFewPoles = 1000;
 /// Multiples of the poles of the closest surfaces so far, and of the closest that are turned over nowhere, at
-/// which a fit that came no closer since is given up: where it folds, more knots fold it more.
+/// which a fit that came no closer since is given up; the latter where there are too many folds to be taken:
+/// more knots fold it more.
 constexpr double kVainPoles = 3, kVainCleanPoles = 4;
 /// Several surfaces with so many poles are to be within so many tolerances: what asks for that many is noise,
 /// or creases across charts, and the rest of the way takes many times as long.
@@ -461,8 +462,10 @@ void FitRounds::refine() {
   if (idle_ > 0) giveWay();
   const bool far = policy_.several && best_ > kFar * tolerance_ && poles() > kFewPoles;
   const bool hopeless = policy_.several && poles() > kManyPoles && best_ > kNearWithMany * tolerance_;
-  const bool vain = poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
-                                            poles() > kVainCleanPoles * closestClean_.poles);
+  const bool manyFolds = double(deviation_.turnedOver.size()) > kSmallFolds * double(samples_.size());
+  const bool vain = poles() > kFewPoles &&
+                    (poles() > kVainPoles * closest_.poles ||
+                     (manyFolds && poles() > kVainCleanPoles * closestClean_.poles));
   if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() ||
       poles() > policy_.maxPoles)
     throw unreachable();
