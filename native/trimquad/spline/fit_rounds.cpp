@@ -463,9 +463,8 @@ void FitRounds::refine() {
   const bool far = policy_.several && best_ > kFar * tolerance_ && poles() > kFewPoles;
   const bool hopeless = policy_.several && poles() > kManyPoles && best_ > kNearWithMany * tolerance_;
   const bool manyFolds = double(deviation_.turnedOver.size()) > kSmallFolds * double(samples_.size());
-  const bool vain = poles() > kFewPoles &&
-                    (poles() > kVainPoles * closest_.poles ||
-                     (manyFolds && poles() > kVainCleanPoles * closestClean_.poles));
+  const bool vain = poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
+                                            (manyFolds && poles() > kVainCleanPoles * closestClean_.poles));
   if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() ||
       poles() > policy_.maxPoles)
     throw unreachable();
