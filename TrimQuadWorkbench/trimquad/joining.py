@@ -97,8 +97,7 @@ def _refit_faulty(result, checks, progress):
     for index, found in faulty.items():
         item = result.regions[index]
         advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
-        charts = {chart for chart, fault in found if "Face" in fault}  # else their edges alone are
-        at_fault.append((item, charts, Error("stage", "fit", advice, item.name)))
+        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name)))
     _refit_all(at_fault, result, progress)
     return bool(faulty)
 
