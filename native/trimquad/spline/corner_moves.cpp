@@ -18,10 +18,6 @@ constexpr int kMorePoles = 2, kFewPoles = 200;
 /// Distance of the places beside a corner that give the sheet its tangent plane, quads.
 constexpr double kBeside = 1.0 / 64;
 
-Eigen::Vector3d normal(const SplineSurface::Jet& jet) {
-  return jet.su.cross(jet.sv).normalized();
-}
-
 /// Whether the sheets around a corner have no common point unless they are made to.
 bool needsMoves(const SheetCorner& corner, const std::vector<Sheet>& sheets) {
   std::set<int> distinct;

@@ -12,10 +12,6 @@ namespace {
 constexpr double kSmallestVolume = 0.0025;  ///< of the parallelepiped of the unit normals
 constexpr int kMaxSteps = 30;
 
-Eigen::Vector3d normal(const SplineSurface::Jet& jet) {
-  return jet.su.cross(jet.sv).normalized();
-}
-
 /// S0 = S1 (= S2), by Newton; two sheets are cut with the plane through `p` across their intersection.
 std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p,
                                                         const std::vector<const Sheet*>& sheets,

@@ -57,6 +57,10 @@ std::vector<double> Sheet::knotLines(int axis, double low, double high) const {
   return lines;
 }
 
+Eigen::Vector3d normal(const SplineSurface::Jet& jet) {
+  return jet.su.cross(jet.sv).normalized();
+}
+
 SplineSurface withSeamAt(const SplineSurface& closed, double u) {
   TRIMQUAD_ASSERT(closed.closedU && u >= closed.firstU() && u < closed.lastU());
   if (u == closed.firstU()) return closed;

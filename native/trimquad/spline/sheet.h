@@ -28,6 +28,9 @@ struct Sheet {
   std::vector<double> knotLines(int axis, double low, double high) const;
 };
 
+/// The unit normal, on the side of su x sv.
+Eigen::Vector3d normal(const SplineSurface::Jet& jet);
+
 /// The same closed surface with its seam at `u` instead; exact. (knots inserted at the new seam, removed at
 /// the old one, where the surface is C^(degree-1))
 SplineSurface withSeamAt(const SplineSurface& closed, double u);

@@ -35,7 +35,7 @@ class StripMoves {
   void append(std::size_t i, double along, double across, std::vector<SurfaceMove>& moves) const {
     Eigen::Vector2d x = still_.footPoint(sampled_.point[i], sampled_.foot[stillSide_][i]);
     const auto jet = still_.jet(x);
-    const Eigen::Vector3d t = direction(i), n = jet.su.cross(jet.sv).normalized();
+    const Eigen::Vector3d t = direction(i), n = normal(jet);
     Eigen::Matrix<double, 3, 2> m;
     m << jet.su, jet.sv;
     x += m.colPivHouseholderQr().solve(along * t + across * n.cross(t));
@@ -91,9 +91,6 @@ void appendMoves(const StripMoves& strip, std::size_t samples, double width,
 template <class Rank>
 void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<Sheet>& sheets,
                       const Rank& rank, std::vector<SurfaceMove>& moves) {
-  const auto normal = [](const SplineSurface::Jet& jet) -> Eigen::Vector3d {
-    return jet.su.cross(jet.sv).normalized();
-  };
   const auto own = std::find_if(corner.uses.begin(), corner.uses.end(),
                                 [&](const SheetCorner::Use& use) { return use.sheet == moving; });
   if (own == corner.uses.end()) return;
