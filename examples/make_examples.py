@@ -9,6 +9,9 @@ tube.step              bent open tube, one smooth surface
 sheet.step             wavy sheet cut by an ellipse
 box_with_fillets.step  solid box, its vertical edges filleted, with a through hole
 closed/tee.step        pipe tee, a closed surface with two handles, its joint and its mouths rounded
+flow/wing.step         the plane around a wing profile, out to a circle
+roof/station.step      roof of a station, 90 m long, along winding tracks: its boundary bends strongly
+pattern/lattice.png    pattern for every quad, as with --pattern: round holes in a lattice of bands
 """
 import math
 import os
@@ -17,7 +20,9 @@ import sys
 import traceback
 
 import FreeCAD
+import numpy
 import Part
+from PIL import Image
 
 V = FreeCAD.Vector
 
@@ -144,6 +149,46 @@ def wing():
     return face
 
 
+def station():
+    """A roof in metres whose eaves wind in plan, high in the middle and drawn down to both ends."""
+    def middle(x):
+        return 9 * math.sin(x / 18)
+
+    def half_width(x):
+        return 9 + 4.5 * math.cos(x / 11)
+
+    def height(x, y):
+        away = (y - middle(x)) / 16
+        return 13 * math.cos(x / 40) * (1 - 0.45 * away**2) + 1.2 * math.sin(x / 7)
+
+    roof = graph_surface(height, 110, 70, 45, 27)
+    places = [90 * (k / 40 - 0.5) for k in range(41)]
+    eaves = [[V(x, middle(x) + side * half_width(x), 0) for x in places] for side in (-1, 1)]
+    left, right = Part.BSplineCurve(), Part.BSplineCurve()
+    left.interpolate(eaves[0])
+    right.interpolate(eaves[1][::-1])
+    ends = [Part.Arc(a, (a + b) / 2 + V(out, 0, 0), b).toShape()
+            for a, b, out in ((eaves[0][-1], eaves[1][-1], 5), (eaves[1][0], eaves[0][0], -5))]
+    outline = Part.Wire([left.toShape(), ends[0], right.toShape(), ends[1]])
+    return roof.common(prism(outline, -40, 40)).Faces[0]
+
+
+def lattice(pixels=256):
+    """Array (n, n, 3) of bytes: bands that cross in the quad's corners, between them a ring. Quarter turns, as where seams
+    of a map turn it, and its repetition leave no joint."""
+    x, y = numpy.abs(numpy.meshgrid(*2 * [(numpy.arange(pixels) + 0.5) / pixels - 0.5]))
+    ring, across = numpy.hypot(x, y), numpy.abs(x - y)
+    image = numpy.empty((pixels, pixels, 3), numpy.uint8)
+    image[:] = (246, 239, 222)
+    image[across < 0.1] = (38, 70, 83)
+    image[across < 0.07] = (42, 157, 143)
+    image[ring < 0.3] = (38, 70, 83)
+    image[ring < 0.27] = (233, 196, 106)
+    image[ring < 0.15] = (38, 70, 83)
+    image[ring < 0.12] = (246, 239, 222)
+    return image
+
+
 def write_step(shape, path):
     """STEP with a constant date in its header, so that the same shape gives the same bytes."""
     shape.exportStep(path)
@@ -156,14 +201,15 @@ def write_step(shape, path):
 
 def main():
     folder = sys.argv[-1] if os.path.isdir(sys.argv[-1]) else os.path.dirname(os.path.abspath(__file__))
-    for name in ("closed", "flow"):
+    for name in ("closed", "flow", "roof", "pattern"):
         os.makedirs(os.path.join(folder, name), exist_ok=True)
     for make, name in ((hood, "hood"), (tube, "tube"), (sheet, "sheet"), (box_with_fillets, "box_with_fillets"),
-                       (tee, "closed/tee"), (wing, "flow/wing")):
+                       (tee, "closed/tee"), (wing, "flow/wing"), (station, "roof/station")):
         shape = make()
         assert shape.isValid(), name
         write_step(shape, os.path.join(folder, name + ".step"))
         print(f"{name}: {shape.ShapeType}, {len(shape.Faces)} faces, area {shape.Area:.6g}")
+    Image.fromarray(lattice()).save(os.path.join(folder, "pattern", "lattice.png"), optimize=True)
     return 0
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Convert the four examples and keep their pictures in docs/ (map, quads, B-spline faces), as the README shows them.
+"""Convert the examples and keep their pictures in docs/ (map, quads, B-spline faces), as the README shows them.
 
-    PYTHONPATH=TrimQuadWorkbench:/usr/lib/freecad-python3/lib python3 examples/render_pictures.py
+    PYTHONPATH=TrimQuadWorkbench:/usr/lib/freecad-python3/lib python3 examples/render_pictures.py [NAME ...]
 
-Every picture comes from the program's own output. Needs matplotlib and PIL.
+Names are those of EXAMPLES; all where there is none. Every picture comes from the program's own output. Needs matplotlib and PIL.
 """
 import os
 import sys
@@ -25,6 +25,10 @@ EXAMPLES = {
     "tee": ("closed/tee", {"quads": 1500}, CLOSED),
     "wing": ("flow/wing", {"quads": 1500, "align": ["Edge2", "Edge3"]}, ("quads",)),
     "wing-aligned": ("flow/wing", {"quads": 1500, "boundary": "aligned"}, ("quads",)),
+    "station": ("roof/station", {"edge_length": 3.0, "pattern": os.path.join(ROOT, "examples", "pattern", "lattice.png")},
+                ("textured",)),
+    **{f"station-{boundary}-{length:g}": ("roof/station", {"edge_length": length, "boundary": boundary}, ("quads",))
+       for boundary in ("free", "aligned") for length in (5.0, 3.0, 1.5)},
 }
 MARGIN = 12  # pixels of white that stay around the drawing
 COLOURS = 96
@@ -42,14 +46,21 @@ def trimmed(picture):
     return picture.quantize(COLOURS, dither=Image.Dither.NONE)
 
 
+def files_for(kinds):
+    """What `--write` needs for these pictures."""
+    needed = {"textured": "texture", "quads": "quads", "map": "gridmap", "nurbs": "nurbs", "nurbs-deviation": "nurbs"}
+    return sorted({"pictures", *(needed.get(kind, "tmesh") for kind in kinds)})
+
+
 def main():
     docs = os.path.join(ROOT, "docs")
     os.makedirs(docs, exist_ok=True)
-    for name, (file, settings, kinds) in EXAMPLES.items():
+    for name in sys.argv[1:] or EXAMPLES:
+        file, settings, kinds = EXAMPLES[name]
         result = trimquad.convert(
-            os.path.join(ROOT, "examples", file + ".step"), trimquad.Options(write=["pictures"], **settings)
+            os.path.join(ROOT, "examples", file + ".step"), trimquad.Options(write=files_for(kinds), **settings)
         )
-        if any(item.error for item in result.regions if item.quads is None or "nurbs" in kinds):
+        if any(item.error for item in result.regions):
             raise result.failed[0].error
         with tempfile.TemporaryDirectory() as folder:
             result.write(folder)
@@ -58,7 +69,7 @@ def main():
                 path = os.path.join(docs, f"{name}-{kind}.png")
                 trimmed(picture).save(path, optimize=True)
                 assert os.path.getsize(path) < LARGEST, path
-        print(f"{name}: {[r.quads.statistics['quads'] for r in result.regions]} quads")
+        print(f"{name}: {', '.join(kinds)}")
 
 
 if __name__ == "__main__":

@@ -71,6 +71,7 @@ def _parser():
                    help="the same as a fraction of the bounding box's diagonal (default 1e-3)")
     p.add_argument("--route", metavar="auto|direct|reembed", help="how the grid map is made (default auto)")
     p.add_argument("--degree", type=int, metavar="P", help="B-spline degree, 2 to 5 (default 3)")
+    p.add_argument("--pattern", metavar="PICTURE", help="what the texture puts on every quad (default: a diamond in grid lines)")
     p.add_argument("--write", type=_names, metavar="LIST",
                    help=f"of {','.join(FILE_KINDS)} (default gridmap,quads,nurbs,report)")
     p.add_argument("--threads", type=int, metavar="N", help="regions worked on at once (default: cores)")

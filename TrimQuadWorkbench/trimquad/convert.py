@@ -12,6 +12,7 @@ from .progress import Progress
 from .regions import RegionResult, map_regions
 from .report import report
 from .source import Source
+from .texture import pattern_image
 
 # Stages keep to this part of the tolerance, so that what they add up to stays under it; by kind of input. Between curved
 # surfaces, deviations can only be measured up to the chord errors of both.
@@ -40,6 +41,7 @@ class Result:
         self.faults = []
         self.cuts = []
         self.guidance = None  # by region: its directions from a file
+        self.pattern = None  # pixels of the texture, where they are from a file
         self.warnings = []
         self.shape_counts = {}
         self.seconds = {}
@@ -113,10 +115,13 @@ def convert(thing, options=None, progress=None):
     options = options or Options()
     progress = progress or Progress()
     options.validate()
+    pattern = None if options.pattern is None else pattern_image(options.pattern)
     source = thing if isinstance(thing, Source) else Source(thing)
     kept_memory = load().KeptMemory()
     try:
-        return _convert(source, options, progress)
+        result = _convert(source, options, progress)
+        result.pattern = pattern
+        return result
     except MemoryError as error:
         raise system_error("convert", error) from None
     finally:

@@ -30,6 +30,7 @@ class Options:
     merge_slivers    trimmed cells under this fraction of a whole cell's area merge with a neighbour; 0: none
     field            'curvature', 'smooth', or the path of a file of directions
     field_weight     how closely the field follows it, 0 to 1; None: 0.1 for 'curvature', 1 for a file
+    pattern          path of the picture that the texture puts on every quad; None: grid lines round a diamond
     """
 
     edge_length: Optional[float] = None
@@ -49,6 +50,7 @@ class Options:
     relative_tolerance: Optional[float] = None
     route: str = "auto"
     degree: int = 3
+    pattern: Optional[str] = None
     write: List[str] = dataclasses.field(default_factory=lambda: ["gridmap", "quads", "nurbs", "report"])
     threads: Optional[int] = None
 
@@ -100,6 +102,11 @@ class Options:
                 raise _refused("field_weight", "says how closely to follow curvature or a file; --field smooth follows neither")
         if not self.write:
             raise _refused("write", f"needs at least one of {', '.join(FILE_KINDS)}")
+        if self.pattern is not None:
+            if not (isinstance(self.pattern, (str, os.PathLike)) and os.fspath(self.pattern)):
+                raise _refused("pattern", f"is the path of a picture, not {self.pattern}")
+            if "texture" not in self.write:
+                raise _refused("pattern", "is what the texture puts on every quad; --write texture is missing")
         self._refuse_missing_stages()
 
     def _refuse_missing_stages(self):

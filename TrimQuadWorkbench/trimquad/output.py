@@ -12,7 +12,7 @@ from .tmesh import tmesh_json
 
 OWN_NAMES = re.compile(
     r"(seamless|gridmap|quads|texture)(-\d+)?\.obj|tmesh(-\d+)?\.json|texture\.(mtl|png)|nurbs\.(step|brep)"
-    r"|report\.json|trimquad\.FCStd|(map|quads|histograms|nurbs|nurbs-deviation|tmesh|tmesh_unfolded)\.png"
+    r"|report\.json|trimquad\.FCStd|(map|quads|textured|histograms|nurbs|nurbs-deviation|tmesh|tmesh_unfolded)\.png"
 )
 
 
@@ -129,7 +129,7 @@ def _write_result(result, folder, progress):
 
 
 def _write_texture(result, folder, progress):
-    from .texture import IMAGE, MATERIAL, material, textured_obj, write_image
+    from .texture import IMAGE, MATERIAL, material, quad_image, textured_obj, write_image
 
     mapped = [(index, item.grid) for index, item in enumerate(result.regions) if item.grid is not None]
     for index, grid in mapped:
@@ -137,7 +137,13 @@ def _write_texture(result, folder, progress):
         folder.write_text(_numbered("texture", index, result), textured_obj(grid.to_obj()))
     if mapped:
         folder.write_text(MATERIAL, material())
-        write_image(folder.scratch(IMAGE))
+        image = quad_image() if result.pattern is None else result.pattern
+        write_image(folder.scratch(IMAGE), image)
+        if "pictures" in result.options.write:
+            from .textured_picture import write_textured
+
+            grids = [grid.arrays for _, grid in mapped]
+            write_textured([(points[triangles], uv) for points, triangles, uv in grids], image, folder.scratch("textured.png"))
 
 
 def _numbered(kind, index, result, extension="obj"):

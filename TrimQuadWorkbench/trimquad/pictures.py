@@ -111,7 +111,7 @@ def _save_deviation(result, edges, path, native_progress):
         surfaces.append((points[triangles], numpy.array([deviation_colour(p) for p in parts])))
         largest = max(largest, distances.max() / tolerance)
     drawing, axes = _painted(surfaces, [(edges, 0.4, LINE_COLOUR)], evenly=True)
-    view = _view_axes()
+    view = view_axes()
     triangles = numpy.concatenate([s[0] for s in surfaces])
     places = numpy.array([worst_place(r) for r in result.regions if r.fitted is not None])
     seen = _visible(places, triangles, view)
@@ -181,7 +181,7 @@ def _save(path, surfaces, lines, singularities=()):
     """Paint triangles, and what they do not hide of the lines and points."""
     drawing, axes = _painted(surfaces, lines)
     if singularities:
-        triangles, view = numpy.concatenate([s[0] for s in surfaces]), _view_axes()
+        triangles, view = numpy.concatenate([s[0] for s in surfaces]), view_axes()
         places = numpy.array([s.position for s in singularities])
         colours = numpy.array([point_colour(s.index) for s in singularities])
         seen = _visible(places, triangles, view)
@@ -201,10 +201,10 @@ def _painted(surfaces, lines, evenly=False):
     colours = numpy.concatenate([s[1] for s in surfaces])
     # Large triangles have no one depth to be sorted by.
     triangles, colours = _divided(triangles, colours, _extent(triangles) / 60)
-    view = _view_axes()
+    view = view_axes()
     flat, depth = triangles @ view[:, :2], (triangles @ view[:, 2]).mean(axis=1)
     order = numpy.argsort(depth, kind="stable")
-    shaded = colours if evenly else numpy.clip(colours * _shade(triangles, view)[:, None], 0, 1)
+    shaded = colours if evenly else numpy.clip(colours * shade(triangles, view)[:, None], 0, 1)
     drawing, axes = _drawing()
     axes.add_collection(
         PolyCollection(flat[order], facecolors=shaded[order], edgecolors=shaded[order], linewidths=0.3)
@@ -215,7 +215,7 @@ def _painted(surfaces, lines, evenly=False):
     return drawing, axes
 
 
-def _view_axes():
+def view_axes():
     """Columns: right, up, towards the eye. The eye stands obliquely above."""
     towards = numpy.array([0.45, -0.72, 0.62])
     towards /= numpy.linalg.norm(towards)
@@ -224,7 +224,7 @@ def _view_axes():
     return numpy.stack([right, numpy.cross(towards, right), towards], axis=1)
 
 
-def _shade(triangles, view):
+def shade(triangles, view):
     normals = numpy.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     lengths = numpy.linalg.norm(normals, axis=1)
     normals /= numpy.where(lengths > 0, lengths, 1)[:, None]

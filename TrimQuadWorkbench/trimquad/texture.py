@@ -1,7 +1,7 @@
 """A map as a textured model: OBJ files whose texture coordinates are the map's, their material and its picture."""
 import numpy
 
-from .error import input_error
+from .error import input_error, system_error
 
 MATERIAL = "texture.mtl"
 IMAGE = "texture.png"
@@ -35,10 +35,32 @@ def quad_image():
     return image
 
 
-def write_image(path):
+def pattern_image(path):
+    """Array (n, m, 3), 0 to 1, of a picture file, what is transparent on white. Raises Error(input)."""
+    read = _matplotlib_image().imread
+    try:
+        pixels = read(path)
+    except FileNotFoundError as error:
+        raise system_error("options", error, path) from None
+    except (OSError, ValueError, SyntaxError) as error:
+        raise input_error("options", f"--pattern {path} cannot be read as a picture ({error}); give a PNG file") from None
+    if pixels.dtype != numpy.float32:
+        pixels = pixels / numpy.iinfo(pixels.dtype).max
+    if pixels.ndim == 2:
+        pixels = pixels[:, :, None]
+    opaque = pixels[:, :, -1:] if pixels.shape[2] in (2, 4) else 1.0
+    colours = pixels[:, :, :3] if pixels.shape[2] >= 3 else numpy.repeat(pixels[:, :, :1], 3, axis=2)
+    return colours * opaque + (1 - opaque)
+
+
+def write_image(path, image):
     """Raises Error(input) where matplotlib is missing."""
+    _matplotlib_image().imsave(path, image, format="png", metadata={"Software": None})
+
+
+def _matplotlib_image():
     try:
         from matplotlib import image
     except ImportError as error:
         raise input_error("write", f"--write texture needs matplotlib ({error})") from None
-    image.imsave(path, quad_image(), format="png", metadata={"Software": None})
+    return image

@@ -1,6 +1,7 @@
 """The add-on in FreeCAD's window: freecad test_window.py COUNTS_FILE. Prints a line a test, writes "PASSED FAILED"."""
 import math
 import os
+import shutil
 import sys
 import tempfile
 import time
@@ -151,6 +152,18 @@ def the_grid_map_is_hidden_until_it_is_asked_for_and_its_parts_can_be_switched()
         setattr(view, name, False)
         assert switch.whichChild.getValue() == -1  # none
         setattr(view, name, True)
+    folder = tempfile.mkdtemp()
+    picture = QtGui.QImage(6, 4, QtGui.QImage.Format_RGB32)
+    picture.fill(QtGui.QColor(120, 60, 0))
+    assert picture.save(os.path.join(folder, "pattern.png"))
+    assert view.Proxy.repeats.scaleFactor.getValue()[0] == 0.5, "the checker is two quads wide"
+    view.Pattern = os.path.join(folder, "pattern.png")
+    pixels, size, components = view.Proxy.texture.image.getValue()
+    assert tuple(size.getValue()) == (6, 4) and components == 3 and pixels[:3] in ("x<\0", b"x<\0")
+    assert view.Proxy.repeats.scaleFactor.getValue()[0] == 1
+    view.Pattern = ""
+    assert view.Proxy.repeats.scaleFactor.getValue()[0] == 0.5
+    shutil.rmtree(folder)
     grid.SingularPoints = [FreeCAD.Vector(0, 0, 0), FreeCAD.Vector(1, 0, 0)]
     grid.SingularIndices = [1, -1]
     coordinates, colours, points = view.Proxy.points

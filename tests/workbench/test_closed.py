@@ -225,39 +225,6 @@ def test_the_constructive_route_gives_an_integer_grid_map_too(name, tmp_path):
     assert sum(4 - n for n in valence.values()) == 4 * CLOSED[name][1]
 
 
-def test_the_texture_is_the_grid_map_on_the_triangles(tmp_path):
-    result = trimquad.convert(ball(), trimquad.Options(quads=100, write=["gridmap", "texture"]))
-    assert result.write(str(tmp_path)) == ["gridmap.obj", "texture.mtl", "texture.obj", "texture.png"]
-    lines = (tmp_path / "texture.obj").read_text().splitlines()
-    geometry = [line for line in lines if line.split()[0] in ("v", "vt", "f")]
-    assert geometry == [x for x in (tmp_path / "gridmap.obj").read_text().splitlines() if x.split()[0] in ("v", "vt", "f")]
-    assert lines[0] == "mtllib texture.mtl"
-    name = next(line.split()[1] for line in lines if line.startswith("usemtl "))
-    material = (tmp_path / "texture.mtl").read_text().splitlines()
-    assert f"newmtl {name}" in material and "map_Kd texture.png" in material
-
-
-def test_the_textures_picture_fits_on_itself_over_every_seam(tmp_path):
-    from matplotlib import image
-
-    from trimquad.texture import write_image
-
-    write_image(str(tmp_path / "texture.png"))
-    pixels = image.imread(str(tmp_path / "texture.png"))[:, :, :3]
-    assert len({tuple(p) for p in pixels.reshape(-1, 3)}) == 3
-    assert (pixels == numpy.rot90(pixels)).all()
-    assert (pixels[0] == pixels[-1]).all()
-
-
-def test_textures_of_several_regions_share_a_material_and_go_with_their_result(tmp_path):
-    options = trimquad.Options(quads=100, write=["texture", "report"])
-    names = trimquad.convert(Part.makeBox(30, 20, 10), options).write(str(tmp_path))
-    assert names == ["report.json", *(f"texture-{k}.obj" for k in range(6)), "texture.mtl", "texture.png"]
-    options.write = ["report"]
-    trimquad.convert(Part.makePlane(30, 20), options).write(str(tmp_path))
-    assert [p.name for p in tmp_path.iterdir()] == ["report.json"]
-
-
 def thin_torus(radius, thickness, around=48, across=12):
     u, v = numpy.meshgrid(numpy.arange(around), numpy.arange(across), indexing="ij")
     a, b = 2 * numpy.pi * u / around, 2 * numpy.pi * v / across

@@ -173,3 +173,17 @@ def test_the_report_has_its_keys(converted, name):
                 "folds", "bridged_holes", "without_singularities", "max_gap", "tolerance"} == set(region["nurbs"])
         assert set(region["seconds"]) == {"tessellate", "field", "seamless", "partition", "quantize", "reembed",
                                           "optimize", "extract", "fit", "write"}
+
+
+@pytest.mark.parametrize("edge_length", [5.0, 3.0, 1.5])
+def test_free_quads_of_the_roof_keep_their_shape_at_every_edge_length(example_path, edge_length):
+    """The paper's Fig. 12: of a strongly curved boundary, aligned quads are bent and squeezed."""
+    import trimquad
+
+    free, aligned = (trimquad.convert(example_path("roof/station"), trimquad.Options(
+        edge_length=edge_length, boundary=boundary, write=["quads"])).regions[0].quads.statistics
+        for boundary in ("free", "aligned"))
+    assert free["irregular_vertices"] == 0 < aligned["irregular_vertices"]
+    assert free["angle_deviation"]["mean"] < aligned["angle_deviation"]["mean"] / 3
+    assert free["edge_length"]["std"] < aligned["edge_length"]["std"] / 5
+    assert free["edge_length"]["mean"] == pytest.approx(edge_length, rel=0.02)

@@ -1,9 +1,13 @@
 """How SplineShell, QuadMesh and GridMap look in the tree and in the 3D view."""
+import FreeCAD
 import FreeCADGui
+import numpy
 from pivy import coin
 
 from ..colours import checker_pixels, deviation_colour, point_colour
+from ..error import Error
 from ..features.quad_mesh import polygons_of
+from ..texture import pattern_image
 from . import icon_path
 
 # Line colour and width of the quads' edges.
@@ -189,6 +193,8 @@ class GridMapView(_View):
             if not hasattr(vobj, name):
                 vobj.addProperty("App::PropertyBool", name, "Map", about)
                 setattr(vobj, name, shown)
+        if not hasattr(vobj, "Pattern"):
+            vobj.addProperty("App::PropertyFile", "Pattern", "Map", "Picture that is put on every quad instead of the checker")
         if not hasattr(vobj, "PointSize"):
             vobj.addProperty("App::PropertyFloat", "PointSize", "Map", "Size of the singular points in pixels")
             vobj.PointSize = 9.0
@@ -214,7 +220,7 @@ class GridMapView(_View):
         vobj.addDisplayMode(self.root, "Map")
         for name in ("CheckerCorners", "GridLines", "AlignedEdges", "SingularPoints"):
             self.updateData(vobj.Object, name)
-        for name in (*self.switches, "PointSize"):
+        for name in (*self.switches, "PointSize", "Pattern"):
             self.onChanged(vobj, name)
 
     def getDisplayModes(self, vobj):
@@ -239,11 +245,9 @@ class GridMapView(_View):
         hints, material = coin.SoShapeHints(), coin.SoMaterial()
         hints.vertexOrdering.setValue(coin.SoShapeHints.COUNTERCLOCKWISE)  # with an unknown shape type: both sides lit
         material.diffuseColor.setValue(1, 1, 1)
-        texture = coin.SoTexture2()
-        pixels = checker_pixels(CHECKER_PIXELS)
-        texture.image.setValue(coin.SbVec2s(CHECKER_PIXELS, CHECKER_PIXELS), 3, pixels)
+        self.texture, self.repeats = coin.SoTexture2(), coin.SoTexture2Transform()
         coordinates, images, triangles = coin.SoCoordinate3(), coin.SoTextureCoordinate2(), coin.SoFaceSet()
-        for node in (hints, material, texture, images, coordinates, triangles):
+        for node in (hints, material, self.texture, self.repeats, images, coordinates, triangles):
             separator.addChild(node)
         return coordinates, images, triangles
 
@@ -277,8 +281,7 @@ class GridMapView(_View):
                 return
             _set_points(coordinates, [tuple(p) for p in corners])
             images.point.setNum(0)
-            # The picture is two quads wide.
-            images.point.setValues(0, len(places), [(p.x / 2, p.y / 2) for p in places])
+            images.point.setValues(0, len(places), [(p.x, p.y) for p in places])
             triangles.numVertices.setNum(0)
             triangles.numVertices.setValues(0, len(corners) // 3, [3] * (len(corners) // 3))
         elif name in ("GridLines", "AlignedEdges"):
@@ -305,6 +308,22 @@ class GridMapView(_View):
             self.switches[name].whichChild.setValue(shown)
         elif name == "PointSize":
             self.style.pointSize.setValue(vobj.PointSize)
+        elif name == "Pattern":
+            self._set_pattern(vobj.Pattern)
+
+    def _set_pattern(self, path):
+        """Put the picture on every quad; the checker, two quads wide, where there is none or it cannot be read."""
+        width = height = CHECKER_PIXELS
+        pixels, quads_wide = checker_pixels(CHECKER_PIXELS), 2
+        if path:
+            try:
+                image = pattern_image(path)[::-1]  # the first row lies at the bottom
+                height, width = image.shape[:2]
+                pixels, quads_wide = numpy.round(255 * image).astype(numpy.uint8).tobytes(), 1
+            except Error as error:
+                FreeCAD.Console.PrintError(f"{error}\n")
+        self.texture.image.setValue(coin.SbVec2s(width, height), 3, pixels)
+        self.repeats.scaleFactor.setValue(1 / quads_wide, 1 / quads_wide)
 
     def getIcon(self):
         return icon_path("TrimQuad_GridMap")
