@@ -12,7 +12,8 @@ namespace {
 
 /// Length of the stretch over which a curve is led to a corner off it, by how far off that is.
 constexpr double kPullLength = 20;
-constexpr int kGapSamples = 1000;
+constexpr int kGapSamples = 1000, kGapSamplesPerPole = 4, kGoldenSections = 20;
+constexpr double kNearlyLargest = 0.7;
 
 Eigen::Matrix<double, 3, 2> metric(const Sheet& sheet, const Eigen::Vector2d& x) {
   const auto jet = sheet.jet(x);
@@ -72,16 +73,49 @@ void snapToSeam(const Sheet& sheet, Eigen::Vector2d& end) {
   if (std::abs(end[0] - seam) < rounding) end[0] = seam;
 }
 
+/// The largest distance of a piece's curve from its images on the sheets: of many samples, and around the largest
+/// of these of what golden sections find.
 double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheets) {
-  double gap = 0;
-  const double a = piece.curve.first(), b = piece.curve.last();
-  for (int i = 0; i <= kGapSamples; ++i) {
-    const double s = i == kGapSamples ? b : a + (b - a) * i / kGapSamples;
+  const auto gapAt = [&](double s) {
     const Eigen::Vector3d p = piece.curve.point(s);
+    double gap = 0;
     for (std::size_t k = 0; k < sheets.size(); ++k)
       gap = std::max(gap, (sheets[k]->jet(piece.onSheet[k].point(s)).s - p).norm());
-  }
-  return gap;
+    return gap;
+  };
+  const double a = piece.curve.first(), b = piece.curve.last();
+  std::vector<double> places{b};
+  for (int i = 0; i < kGapSamples; ++i) places.push_back(a + (b - a) * i / kGapSamples);
+  const auto addBetween = [&](const std::vector<double>& knots) {
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+      for (int k = 0; k < kGapSamplesPerPole && knots[i] < knots[i + 1]; ++k)
+        places.push_back(knots[i] + (knots[i + 1] - knots[i]) * k / kGapSamplesPerPole);
+  };
+  addBetween(piece.curve.knots);
+  for (const auto& image : piece.onSheet) addBetween(image.knots);
+  std::sort(places.begin(), places.end());
+  std::vector<double> gaps;
+  for (const double s : places) gaps.push_back(gapAt(s));
+  const double sampled = *std::max_element(gaps.begin(), gaps.end());
+  double largest = sampled;
+  for (std::size_t i = 1; i + 1 < gaps.size(); ++i)
+    if (gaps[i] >= kNearlyLargest * sampled && gaps[i] >= gaps[i - 1] && gaps[i] >= gaps[i + 1]) {
+      constexpr double part = 0.381966;  // of a golden section
+      double low = places[i - 1], middle = places[i], high = places[i + 1], best = gaps[i];
+      for (int step = 0; step < kGoldenSections; ++step) {
+        const bool above = high - middle > middle - low;
+        const double s = middle + part * (above ? high - middle : low - middle), gap = gapAt(s);
+        if (gap > best) {
+          (above ? low : high) = middle;
+          middle = s;
+          best = gap;
+        } else {
+          (above ? high : low) = s;
+        }
+      }
+      largest = std::max(largest, best);
+    }
+  return largest;
 }
 
 /// S(x(s)) as a curve in space.
@@ -208,6 +242,13 @@ std::vector<Eigen::Vector2d> feetOn(const SheetSide& side, const SampledCurve& s
 double SampledCurve::lengthAt(double at) const {
   const auto [left, x] = placeAmong(t, at);
   return (1 - x) * s[left] + x * s[left + 1];
+}
+
+double SampledCurve::apart(const std::vector<SheetSide>& sides) const {
+  double most = 0;
+  for (std::size_t i = 0; i < point.size(); ++i)
+    most = std::max(most, (sides[0].sheet->jet(foot[0][i]).s - sides[1].sheet->jet(foot[1][i]).s).norm());
+  return most;
 }
 
 SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& sides, double reach) {

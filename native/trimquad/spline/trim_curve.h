@@ -32,6 +32,8 @@ struct SampledCurve {
 
   /// Chord length from the start to the curve's point at parameter `at`.
   double lengthAt(double at) const;
+  /// How far the feet of a sample on both sides are from each other at most.
+  double apart(const std::vector<SheetSide>& sides) const;
 };
 
 /// Samples between all neighbouring boundary vertices. Throws Error(Stage, "fit") where a sheet is further

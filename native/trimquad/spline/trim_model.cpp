@@ -169,9 +169,13 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
 /// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
 void ModelTrimmer::joinTangent() {
   std::vector<TangentCurve> tangent;
-  for (const auto& [id, curve] : curves_)
-    if (curve.sides.size() == 2 && !curve.intersection)
-      tangent.push_back({&curve.sampled[0], {sheetOf(*curve.sides[0].run), sheetOf(*curve.sides[1].run)}});
+  for (const auto& [id, curve] : curves_) {
+    if (curve.sides.size() != 2 || curve.intersection) continue;
+    const auto& sides = curve.sides;
+    auto& added =
+        tangent.emplace_back(TangentCurve{&curve.sampled[0], {sheetOf(*sides[0].run), sheetOf(*sides[1].run)}});
+    for (const int side : {0, 1}) added.behind[side] = model_.regions[sides[side].run->region].surface.get();
+  }
   const auto moved = joinTangentSheets(
       sheets_, tangent, tangentCorners(), mayMove(), kStripWidth * tolerance_, kTangentGap * model_.diagonal,
       [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
@@ -219,7 +223,10 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
   }
   const bool loose = !edge;
   if (loose) {
-    const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+    double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+    // Sheets that agree do so on the curve itself.
+    if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal)
+      near = std::min(near, kTangentGap * model_.diagonal);
     edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
   }
   result.push_back({std::move(*edge), {&a, &b}, loose});

@@ -133,6 +133,61 @@ TEST(TrimModel, tangentSheetsAreMovedOntoEachOther) {
     }
 }
 
+/// What wavy() gives, as the surface behind triangles.
+class WavySurface : public TrueSurface {
+ public:
+  Foot closest(const Eigen::Vector3d& p) const override {
+    const auto along = [](const Eigen::Vector2d& x, int axis) -> Eigen::Vector3d {
+      constexpr double h = 1e-6;
+      const Eigen::Vector2d step = h * Eigen::Vector2d::Unit(axis);
+      return (wavy(x[0] + step[0], x[1] + step[1]) - wavy(x[0] - step[0], x[1] - step[1])) / (2 * h);
+    };
+    Eigen::Vector2d x = p.head<2>();
+    Eigen::Matrix<double, 3, 2> m;
+    for (int step = 0; step < 20; ++step) {
+      m << along(x, 0), along(x, 1);
+      x += (m.transpose() * m).ldlt().solve(m.transpose() * (p - wavy(x[0], x[1])));
+    }
+    return {wavy(x[0], x[1]), m.col(0).cross(m.col(1)).normalized()};
+  }
+  Foot closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d&) const override { return closest(p); }
+  Curvature curvature(const Eigen::Vector3d&) const override { throw std::logic_error("not asked for"); }
+};
+
+TEST(TrimModel, tangentSheetsAreBothMovedOntoTheModelsCurve) {
+  auto sheets = tangentSheets(slowlyVarying);
+  for (auto& pole : sheets.fits[0]->surface.poles) pole[2] -= 1.5e-4;
+  for (auto& region : sheets.model.regions) region.surface = std::make_shared<WavySurface>();
+  const auto model = sheets.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_EQ(model.moved.size(), 2u);
+  EXPECT_LE(measuredGaps(model).edge, 2e-7 * sheets.model.diagonal);
+  for (double y = 0.1; y < 6; y += 0.1) {
+    const Eigen::Vector3d p = wavy(5, y);
+    std::vector<Eigen::Vector3d> normals;
+    for (const auto& face : model.faces) {
+      const Eigen::Vector2d foot = face.surface.footPoint(p, {5, y});
+      const auto jet = face.surface.jet(foot[0], foot[1]);
+      EXPECT_LE((jet.s - p).norm(), 2e-7 * sheets.model.diagonal) << y;
+      normals.push_back(jet.su.cross(jet.sv).normalized());
+    }
+    EXPECT_LE(normals[0].cross(normals[1]).norm(), 1e-4) << y;
+  }
+}
+
+TEST(TrimModel, aSheetThatMayNotMoveOntoTheCurveIsFollowedByTheOther) {
+  auto sheets = tangentSheets(slowlyVarying);
+  for (auto& region : sheets.model.regions) region.surface = std::make_shared<WavySurface>();
+  // Its inner double knot keeps it from moving.
+  sheets.fits[0]->surface = withKnotU(sheets.fits[0]->surface, sheets.fits[0]->surface.knotsU[10]);
+  for (auto& pole : sheets.fits[0]->surface.poles) pole[2] -= 1.5e-4;
+  const auto model = sheets.trim();
+  EXPECT_EQ(model.looseEdges, 0);
+  ASSERT_EQ(model.moved.size(), 1u);
+  EXPECT_EQ(model.moved.begin()->first, 1);
+  EXPECT_LE(measuredGaps(model).edge, 2.5e-7 * sheets.model.diagonal);
+}
+
 TEST(TrimModel, sheetsAroundACornerAgreeThere) {
   auto quarters = tangentQuarters([](int quarter, double x, double y) {
     return 1e-4 * std::sin(0.8 * x + 2 * quarter) + 1e-4 * std::cos(0.9 * y + quarter * quarter);
