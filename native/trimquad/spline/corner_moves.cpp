@@ -15,6 +15,7 @@ namespace {
 constexpr double kFlat = 0.1;
 /// Poles that a sheet may come to have, by those it has; and how many more in any case.
 constexpr int kMorePoles = 2, kFewPoles = 200;
+constexpr double kFade = 1;  ///< quads over which a sheet goes back to where it was
 /// Distance of the places beside a corner that give the sheet its tangent plane, quads.
 constexpr double kBeside = 1.0 / 64;
 
@@ -39,18 +40,18 @@ Eigen::Vector3d meetingPoint(const SheetCorner& corner, const std::vector<Sheet>
   return still.empty() ? corner.point : cornerPoint(corner.point, still, guess, HUGE_VAL).point;
 }
 
-void appendMoves(const Sheet& sheet, const SheetCorner::Use& use, const Eigen::Vector3d& target,
+void appendMoves(const Sheet& sheet, const SheetCorner::Use& use, const Eigen::Vector3d& target, double error,
                  bool withTangents, std::vector<SurfaceMove>& moves) {
   const Eigen::Vector2d y = sheet.footPoint(target, use.at);
   const auto jet = sheet.jet(y);
   const Eigen::Vector3d by = target - jet.s;
-  moves.push_back({y, by, {1, 1}, 1, true});
+  moves.push_back({y, by, {1, 1}, 1, error});
   if (!withTangents || !use.normal) return;
   for (const Eigen::Vector2d& step : {Eigen::Vector2d(kBeside, 0), Eigen::Vector2d(0, kBeside)})
     for (const double sign : {-1.0, 1.0}) {
       const Eigen::Vector2d aside = sign * step;
       const double off = (jet.su * aside[0] + jet.sv * aside[1]).dot(*use.normal);
-      if (sheet.holds(y + aside)) moves.push_back({y + aside, by - off * *use.normal, {1, 1}, 1, false});
+      if (sheet.holds(y + aside)) moves.push_back({y + aside, by - off * *use.normal, {1, 1}, 1, HUGE_VAL});
     }
 }
 
@@ -79,8 +80,8 @@ std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<She
       progress.check();
       std::vector<SurfaceMove> moves;
       for (const auto& meeting : meetings[k])
-        appendMoves(sheets[k], *meeting.use, meeting.point, withTangents, moves);
-      auto surface = movedSurface(sheets[k].surface, moves, error, kMorePoles * poles + kFewPoles, progress);
+        appendMoves(sheets[k], *meeting.use, meeting.point, error, withTangents, moves);
+      auto surface = movedSurface(sheets[k].surface, moves, kFade, kMorePoles * poles + kFewPoles, progress);
       if (!surface || !accepts(k, *surface)) continue;
       sheets[k].surface = std::move(*surface);
       moved.push_back(k);

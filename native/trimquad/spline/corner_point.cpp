@@ -15,7 +15,8 @@ constexpr int kMaxSteps = 30;
 /// S0 = S1 (= S2), by Newton; two sheets are cut with the plane through `p` across their intersection.
 std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p,
                                                         const std::vector<const Sheet*>& sheets,
-                                                        std::vector<Eigen::Vector2d> at, double reach) {
+                                                        std::vector<Eigen::Vector2d> at, double reach,
+                                                        double smallestAngle) {
   const int count = int(sheets.size()), size = 2 * count;
   std::vector<SplineSurface::Jet> jets(count);
   const auto evaluate = [&] {
@@ -25,7 +26,8 @@ std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p
   const Eigen::Vector3d along = normal(jets[0]).cross(normal(jets[1]));
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Vector3d n2 = count == 3 ? normal(jets[2]) : along;
-    if (std::abs(normal(jets[0]).cross(normal(jets[1])).dot(n2)) < kSmallestVolume) return {};
+    const double smallest = count == 3 ? kSmallestVolume : smallestAngle * smallestAngle;
+    if (std::abs(normal(jets[0]).cross(normal(jets[1])).dot(n2)) < smallest) return {};
     Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size, size);
     Eigen::VectorXd f = Eigen::VectorXd::Zero(size);
     for (int i = 1; i < count; ++i) {
@@ -80,7 +82,7 @@ std::vector<std::vector<int>> steepestFirst(const std::vector<const Sheet*>& she
 }  // namespace
 
 CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
-                        const std::vector<Eigen::Vector2d>& guess, double reach) {
+                        const std::vector<Eigen::Vector2d>& guess, double reach, double smallestAngle) {
   TRIMQUAD_ASSERT(!sheets.empty() && sheets.size() == guess.size());
   CornerPoint corner{Eigen::Vector3d::Zero(), guess};
   for (std::size_t i = 0; i < sheets.size(); ++i) {
@@ -92,7 +94,7 @@ CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*
     std::vector<const Sheet*> some;
     std::vector<Eigen::Vector2d> at;
     for (const int i : chosen) some.push_back(sheets[i]), at.push_back(corner.at[i]);
-    const auto common = commonPoint(p, some, std::move(at), reach);
+    const auto common = commonPoint(p, some, std::move(at), reach, smallestAngle);
     if (!common) continue;
     corner.point = some[0]->jet((*common)[0]).s;
     for (std::size_t i = 0; i < sheets.size(); ++i)

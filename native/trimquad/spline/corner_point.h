@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "trimquad/spline/intersection_curve.h"
 #include "trimquad/spline/sheet.h"
 
 namespace trimquad {
@@ -18,9 +19,12 @@ struct CornerPoint {
 /// the intersection curve of two, the common point of three (Newton). More than three have none, nor have
 /// sheets that are nearly tangent: then that of the three which cross most steeply, else of the two, and its
 /// foot points on the others. Where these do not meet within `reach` either, the mean of the foot points of
-/// `p`, and its own foot points. \param guess parameters near p, by sheet
+/// `p`, and its own foot points.
+/// \param guess         parameters near p, by sheet
+/// \param smallestAngle sine of the angle between two sheets below which they are nearly tangent
 CornerPoint cornerPoint(const Eigen::Vector3d& p, const std::vector<const Sheet*>& sheets,
-                        const std::vector<Eigen::Vector2d>& guess, double reach);
+                        const std::vector<Eigen::Vector2d>& guess, double reach,
+                        double smallestAngle = kSmallestCrossing);
 
 /// A straight line on a sheet, in quads along it from `start`.
 struct SheetLine {

@@ -28,8 +28,13 @@ double crossingAngle(const SplineSurface::Jet& a, const SplineSurface::Jet& b) {
 }  // namespace
 
 IntersectionCurve::IntersectionCurve(const Sheet& a, const Sheet& b, SpaceCurve reference,
-                                     std::vector<Guess> guesses, double reach)
-    : a_(&a), b_(&b), reference_(std::move(reference)), guesses_(std::move(guesses)), reach_(reach) {
+                                     std::vector<Guess> guesses, double reach, double smallestAngle)
+    : a_(&a),
+      b_(&b),
+      reference_(std::move(reference)),
+      guesses_(std::move(guesses)),
+      reach_(reach),
+      smallestAngle_(smallestAngle) {
   TRIMQUAD_ASSERT(guesses_.size() >= 2);
 }
 
@@ -44,10 +49,10 @@ std::optional<Parameters> IntersectionCurve::parameters(double s) const {
   const auto r = reference_.derivatives(s, 1);
   const Eigen::Vector3d direction = r[1].normalized();
   constexpr int maxSteps = 30;
-  constexpr double smallestAngle = 0.05, converged = 1e-13;
+  constexpr double converged = 1e-13;
   for (int step = 0; step < maxSteps; ++step) {
     const auto a = a_->jet(z.head<2>()), b = b_->jet(z.tail<2>());
-    if (crossingAngle(a, b) < smallestAngle) return {};
+    if (crossingAngle(a, b) < smallestAngle_) return {};
     Eigen::Vector4d f;
     f << a.s - b.s, direction.dot(a.s - r[0]);
     const Eigen::Vector4d move = jacobian(a, b, direction).partialPivLu().solve(-f);

@@ -8,6 +8,9 @@
 
 namespace trimquad {
 
+/// Sine of the angle between sheets below which their intersection says little about where they should meet.
+inline constexpr double kSmallestCrossing = 0.05;
+
 /// The curve in which two sheets cut each other near a reference curve R(s): the point at s is the one in the
 /// plane through R(s) across R'(s).
 class IntersectionCurve {
@@ -22,8 +25,9 @@ class IntersectionCurve {
   /// \param reference at least C3
   /// \param guesses   ascending in s
   /// \param reach     how far the curve may lie from the reference, model units
+  /// \param smallestAngle sine of the angle between the sheets below which they have no intersection
   IntersectionCurve(const Sheet& a, const Sheet& b, SpaceCurve reference, std::vector<Guess> guesses,
-                    double reach);
+                    double reach, double smallestAngle);
 
   const Sheet& a() const { return *a_; }
   const Sheet& b() const { return *b_; }
@@ -45,7 +49,7 @@ class IntersectionCurve {
   const Sheet* b_;
   SpaceCurve reference_;
   std::vector<Guess> guesses_;
-  double reach_;
+  double reach_, smallestAngle_;
 };
 
 }  // namespace trimquad

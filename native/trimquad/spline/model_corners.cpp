@@ -65,6 +65,16 @@ void ModelTrimmer::placeCorners() {
   placeInnerPoints();
 }
 
+/// Whether the intersection of sheets that have been given a slight edge ends in a corner.
+bool ModelTrimmer::endsFold(int corner) const {
+  return std::any_of(curves_.begin(), curves_.end(), [&](const auto& item) {
+    const CurveWithSides& curve = item.second;
+    if (!curve.folded || !curve.intersection) return false;
+    const BoundaryRun& run = *curve.sides[0].run;
+    return cornerOf(run.start) == corner || cornerOf(run.end) == corner;
+  });
+}
+
 /// The point of its region's layout that a corner is, or -1.
 int ModelTrimmer::layoutPoint(const CornerUse& use) const {
   if (use.layoutPoint || use.vertex < 0) return use.layoutPoint.value_or(-1);
@@ -89,7 +99,9 @@ CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
     if (const int point = layoutPoint(uses_[i]); point >= 0 && !borders_[region]->endsAt(point).empty())
       points.insert({region, point});
   }
-  if (points.empty()) return cornerPoint(p, sheets, guess, reach_);
+  if (points.empty())
+    return cornerPoint(p, sheets, guess, reach_,
+                       endsFold(uses_[members.front()].corner) ? kSmallestFold : kSmallestCrossing);
   CornerPoint corner{Eigen::Vector3d::Zero(), guess};
   bool placed = false;
   for (const auto& [region, point] : points) {

@@ -36,6 +36,7 @@ struct CurveWithSides {
   std::vector<SheetSide> sides;
   std::vector<SampledCurve> sampled;  ///< one for all sides where they share the edge, else one a side
   std::optional<IntersectionCurve> intersection;
+  bool folded = false;  ///< whether its sheets were tangent, and have been given a slight edge there
 };
 
 /// Trims fitted surfaces and joins them. Everything that does not depend on how closely free edges follow
@@ -93,14 +94,15 @@ class ModelTrimmer {
   }
   void intersect(CurveWithSides& curve) {
     if (curve.sides.size() == 2)
-      curve.intersection =
-          intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, progress_);
+      curve.intersection = intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_,
+                                             curve.folded ? kSmallestFold : kSmallestCrossing, progress_);
   }
   std::vector<SheetCorner> tangentCorners() const;
   bool acceptsMoved(int sheet, const SplineSurface& surface);
   std::vector<char> mayMove() const;
   void meetInCorners();
   void joinTangent();
+  bool joinTangent(const std::vector<int>& touching, double gap);
 
   void placeSeams() {
     for (int k = 0; k < int(sheets_.size()); ++k) {
@@ -129,6 +131,7 @@ class ModelTrimmer {
   CornerPoint cornerOnBorders(const std::vector<int>& members);
   void placeInnerPoints();
   int layoutPoint(const CornerUse& use) const;
+  bool endsFold(int corner) const;
 
   struct CurveEdge {
     std::vector<TrimPiece> pieces;

@@ -13,7 +13,6 @@ namespace {
 /// Weight of the plate's energy against an integral of squared distance along the curves: so small that it
 /// holds nothing back.
 constexpr double kPlate = 1e-9;
-constexpr double kFadeLength = 1;  ///< quads
 constexpr int kMaxRounds = 12;
 /// A direction of the parameter plane takes part in a curve's if it has this much of the other's share.
 constexpr double kTakesPart = 0.3;
@@ -32,8 +31,8 @@ std::optional<SplineLine> lineOf(const std::vector<double>& knots, int degree, b
 }
 
 /// The bed: points at rest all over the parameter plane.
-void appendBed(const SplineSpace& space, std::vector<Datum>& data) {
-  const double weight = kPlate / std::pow(kFadeLength, 4);
+void appendBed(const SplineSpace& space, double fade, std::vector<Datum>& data) {
+  const double weight = kPlate / std::pow(fade, 4);
   const double gauss[] = {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)};
   for (int j = 0; j < space.v.spans(); ++j)
     for (int i = 0; i < space.u.spans(); ++i)
@@ -84,29 +83,29 @@ SplineSurface sum(SplineSurface surface, const SplineSurface& finer) {
 }  // namespace
 
 std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const std::vector<SurfaceMove>& moves,
-                                          double error, int maxPoles, const Progress& progress) {
+                                          double fade, int maxPoles, const Progress& progress) {
   auto u = lineOf(surface.knotsU, surface.degreeU, surface.closedU);
   auto v = lineOf(surface.knotsV, surface.degreeV, false);
   if (!u || !v) return {};
   SplineSpace space{std::move(*u), std::move(*v)};
   const Fairness plate{kPlate, kPlate, {{space.u.breaks.front(), space.v.breaks.front()}}, HUGE_VAL};
-  double left = 0;  // of the moves
-  for (const auto& move : moves) left = std::max(left, move.by.norm());
+  double left = 0;  // of the moves, by their errors
+  for (const auto& move : moves) left = std::max(left, move.by.norm() / move.error);
   left *= kWorthWhile;
   std::optional<SplineSurface> best;
   for (int round = 0; round < kMaxRounds && space.poles() <= maxPoles; ++round) {
     std::vector<Datum> data;
     for (const auto& move : moves)
       data.push_back({{surface.wrappedU(move.at[0]), move.at[1]}, move.by, move.weight});
-    appendBed(space, data);
+    appendBed(space, fade, data);
     auto way = space.leastSquares(data, plate, progress);
     if (!way) break;
     std::vector<SurfaceMove> missed;
     double worst = 0;
     for (SurfaceMove move : moves) {
       move.at[0] = surface.wrappedU(move.at[0]);
-      const double off = (way->point(move.at[0], move.at[1]) - move.by).norm();
-      if (!move.exact || off <= error) continue;
+      const double off = (way->point(move.at[0], move.at[1]) - move.by).norm() / move.error;
+      if (off <= 1) continue;
       worst = std::max(worst, off);
       missed.push_back(move);
     }

@@ -12,16 +12,16 @@ namespace trimquad {
 struct SurfaceMove {
   Eigen::Vector2d at;     ///< quads
   Eigen::Vector3d by;     ///< model units
-  Eigen::Vector2d along;  ///< direction, in the parameter plane, of the curve that the place is a sample of
-  double weight;          ///< length of that curve that it stands for, quads
-  bool exact;             ///< whether the error counts
+  Eigen::Vector2d along;  ///< direction, in the parameter plane, in which the moves vary from place to place
+  double weight;          ///< length of the curve that it is a sample of and stands for, quads
+  double error;           ///< by how much it may be missed, model units; HUGE_VAL where that does not count
 };
 
-/// The surface, with more knots, that moves as given, the exact ones within `error` (model units), and less
-/// and less the further away from there: by a thin plate on an elastic bed, which fades over about a quad.
-/// Where no more than about `maxPoles` poles bring it there, what comes close, to a tenth of the largest move
-/// at most; empty where nothing does, or where `surface` has multiple knots.
+/// The surface, with more knots, that moves as given, and less and less the further away from there: by a
+/// thin plate on an elastic bed, which fades over about `fade` quads. Where no more than about `maxPoles`
+/// poles bring it there, what comes close, to a tenth of the largest move at most (by their errors); empty
+/// where nothing does, or where `surface` has multiple knots.
 std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const std::vector<SurfaceMove>& moves,
-                                          double error, int maxPoles, const Progress& progress);
+                                          double fade, int maxPoles, const Progress& progress);
 
 }  // namespace trimquad

@@ -23,8 +23,13 @@ constexpr double kBesideWeight = 0.01;
 constexpr double kCornerWeight = 0.01;  ///< length of curve that a corner stands for, quads
 /// Sine of the angle between the sheets from which on they have an edge there, and keep it.
 constexpr double kSharp = 0.1;
-/// Half of the width of the strip in which a sheet moves parallel to itself, quads.
-constexpr double kParallel = 1.0 / 32;
+/// Half of the width of the strip in which a sheet that moves onto its curve gets its slope, quads.
+constexpr double kStrip = 1.0 / 32;
+/// Sine of the angle of a fold, and what of it may be missed; of the angles up to which sheets are turned to
+/// make it, and from which on they are not turned.
+constexpr double kFold = 0.01, kFoldMissed = 0.001, kFlattened = 0.02, kKept = 0.15;
+/// Quads over which sheets go back to where they were.
+constexpr double kFade = 1, kFadeFromCurve = 0.125;
 /// How far the strip goes on beyond the curve's ends, where the model's corners may lie off them: by its
 /// width.
 constexpr double kBeyondEnds[] = {1, 2, 4};
@@ -57,31 +62,39 @@ class StripMoves {
   SplineSurface::Jet jet(std::size_t i) const {
     return moving_.jet(moving_.footPoint(sampled_.point[i], sampled_.foot[side_][i]));
   }
-  /// \param exact  whether it is a place of the curve itself
+  /// Whether there is such a move: beyond the sheet's end there is none.
+  /// \param error  see SurfaceMove
   /// \param facing a normal that the sheet's has to be nearly parallel to
-  void append(std::size_t i, const Eigen::Vector3d& place, bool exact,
+  bool append(std::size_t i, const Eigen::Vector3d& place, double error,
               const std::optional<Eigen::Vector3d>& facing, std::vector<SurfaceMove>& moves) const {
     const Eigen::Vector2d y = moving_.footPoint(place, sampled_.foot[side_][i]);
     const auto at = moving_.jet(y);
-    if (facing && facing->cross(normal(at)).norm() > kSharp) return;
+    if (facing && facing->cross(normal(at)).norm() > kSharp) return false;
     const Eigen::Vector3d by = place - at.s;
-    // Beyond the sheet's end there is no foot.
     const double sliding =
         std::max(std::abs(by.dot(at.su.normalized())), std::abs(by.dot(at.sv.normalized())));
     constexpr double rounding = 1e-9;
-    if (sliding > 1e-3 * by.norm() + rounding) return;
+    if (sliding > 1e-3 * by.norm() + rounding) return false;
     const Eigen::Vector2d run = inPlane(at, direction(i));
     const auto [before, after] = around(i);
     const double length = run.norm() * (sampled_.s[after] - sampled_.s[before]) / 2;
-    moves.push_back({y, by, run, exact ? length : kBesideWeight * length, exact});
+    moves.push_back({y, by, run, facing ? kBesideWeight * length : length, error});
+    return true;
   }
-  /// Makes the last move one of the places on both sides of it as well, so that the sheet is not turned.
-  void keepSlope(std::vector<SurfaceMove>& moves) const {
+  /// Makes the last move one of the places on both sides of it as well, so that the sheet is not turned, or
+  /// by as much as said. \param turn   slope, to the left \param missed how much of it may be missed;
+  /// HUGE_VAL where it does not count
+  void setSlope(double turn, double missed, std::vector<SurfaceMove>& moves) const {
     const SurfaceMove last = moves.back();
-    const Eigen::Vector2d across = Eigen::Vector2d(-last.along[1], last.along[0]).normalized();
-    for (const double by : {-kParallel, kParallel})
-      if (within(moving_, last.at + by * across))
-        moves.push_back({last.at + by * across, last.by, last.along, last.weight, false});
+    const auto jet = moving_.jet(last.at);
+    const Eigen::Vector2d left =
+        inPlane(jet, normal(jet).cross(jet.su * last.along[0] + jet.sv * last.along[1]));
+    const Eigen::Vector2d step = kStrip * left.normalized();
+    const double width = (jet.su * step[0] + jet.sv * step[1]).norm();
+    for (const double to : {-1.0, 1.0})
+      if (within(moving_, last.at + to * step))
+        moves.push_back({last.at + to * step, last.by + to * width * turn * normal(jet),
+                         step / kStrip + last.along.normalized(), last.weight, missed * width});
   }
 
  private:
@@ -96,7 +109,7 @@ class StripMoves {
 
 /// Moves onto another sheet.
 void appendMovesOnto(const StripMoves& strip, const Sheet& still, const std::vector<Eigen::Vector2d>& feet,
-                     double width, std::vector<SurfaceMove>& moves) {
+                     double width, double error, std::vector<SurfaceMove>& moves) {
   const auto append = [&](std::size_t i, double along, double across) {
     Eigen::Vector2d x = still.footPoint(strip.point(i), feet[i]);
     const auto jet = still.jet(x);
@@ -105,7 +118,9 @@ void appendMovesOnto(const StripMoves& strip, const Sheet& still, const std::vec
     if (!within(still, x)) return;
     std::optional<Eigen::Vector3d> facing;
     if (across != 0) facing = n;
-    strip.append(i, still.jet(x).s, along == 0 && across == 0, facing, moves);
+    const bool exact = along == 0 && across == 0;
+    if (strip.append(i, still.jet(x).s, exact ? error : HUGE_VAL, facing, moves) && !exact && !facing)
+      moves.back().weight *= kBesideWeight;
   };
   for (std::size_t i = 0; i < strip.samples(); ++i)
     for (const int line : {-1, 0, 1}) append(i, 0, line * width);
@@ -116,23 +131,56 @@ void appendMovesOnto(const StripMoves& strip, const Sheet& still, const std::vec
     }
 }
 
-/// Moves onto the curve, to be tangent to the surface behind the sheet or to stay parallel to what it was.
-void appendMovesToCurve(const StripMoves& strip, const TrueSurface& behind, bool withTangents,
-                        std::vector<SurfaceMove>& moves) {
+/// The sines of the angles between a curve's sheets, by sample: above 0 where they make a ridge, seen from
+/// outside, below where they make a valley; infinite where it is no sharper than a right angle.
+std::vector<double> angles(const TangentCurve& curve, const std::vector<Sheet>& sheets) {
+  std::vector<double> found;
+  const StripMoves strips[] = {{*curve.sampled, 0, sheets[curve.sides[0].sheet]},
+                               {*curve.sampled, 1, sheets[curve.sides[1].sheet]}};
+  for (std::size_t i = 0; i < strips[0].samples(); ++i) {
+    const Eigen::Vector3d n[] = {normal(strips[0].jet(i)), normal(strips[1].jet(i))};
+    const int left = curve.sides[0].onLeft ? 0 : 1;
+    const bool sharp = n[0].dot(n[1]) <= 0;
+    found.push_back(sharp ? HUGE_VAL : n[left].cross(n[1 - left]).dot(strips[0].direction(i)));
+  }
+  return found;
+}
+
+/// Whether less turning makes a curve's sheets a ridge than a valley.
+bool isRidge(const std::vector<double>& angles) {
+  double ridge = 0, valley = 0;
+  for (const double angle : angles) {
+    ridge += std::max(0.0, kFold - angle);
+    valley += std::max(0.0, kFold + angle);
+  }
+  return ridge <= valley;
+}
+
+/// From 0 to 1, without slope at both ends.
+double smoothStep(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+/// How sheets are turned about the curve that they move onto.
+enum class Turning {
+  ToFold,    ///< until they make the fold, where they are not far from it
+  AwayFrom,  ///< where they do not make as much of an edge
+  None       ///< they stay parallel to what they were
+};
+
+/// Moves onto the curve.
+/// \param angles between the sheets, by sample \param share  of the turning that is this sheet's
+void appendMovesToCurve(const StripMoves& strip, bool onLeft, bool ridge, const std::vector<double>& angles,
+                        double share, Turning turning, double gap, std::vector<SurfaceMove>& moves) {
   for (std::size_t i = 0; i < strip.samples(); ++i) {
-    const std::size_t before = moves.size();
-    strip.append(i, strip.point(i), true, {}, moves);
-    if (!withTangents) {
-      if (moves.size() > before) strip.keepSlope(moves);
-      continue;
-    }
-    const auto jet = strip.jet(i);
-    const Eigen::Vector3d n = normal(jet), across = n.cross(strip.direction(i));
-    const double width = kParallel / inPlane(jet, across).norm();
-    for (const double side : {-width, width}) {
-      const auto beside = behind.closestFacing(strip.point(i) + side * across, n);
-      strip.append(i, beside.point, false, beside.normal, moves);
-    }
+    if (!strip.append(i, strip.point(i), gap / 2, {}, moves)) continue;
+    const double angle = ridge ? angles[i] : -angles[i];
+    const bool turns = turning != Turning::None && std::abs(angle) < kKept;
+    double turn = turns ? kFold - angle : 0;
+    if (turn < 0)
+      turn *= turning == Turning::ToFold ? 1 - smoothStep((angle - kFlattened) / (kKept - kFlattened)) : 0;
+    strip.setSlope((onLeft == ridge ? -share : share) * turn, turns ? kFoldMissed : HUGE_VAL, moves);
   }
 }
 
@@ -140,7 +188,7 @@ void appendMovesToCurve(const StripMoves& strip, const TrueSurface& behind, bool
 /// there.
 template <class Rank>
 void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<Sheet>& sheets,
-                      const Rank& rank, std::vector<SurfaceMove>& moves) {
+                      const Rank& rank, double error, std::vector<SurfaceMove>& moves) {
   const auto own = std::find_if(corner.uses.begin(), corner.uses.end(),
                                 [&](const SheetCorner::Use& use) { return use.sheet == moving; });
   if (own == corner.uses.end()) return;
@@ -158,63 +206,70 @@ void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<S
   if (!still) return;
   // Across the sheet only: along it the feet differ as little.
   const Eigen::Vector3d n = normal(at);
-  moves.push_back({y, n.dot(there.s - at.s) * n, {1, 1}, kCornerWeight, true});
+  moves.push_back({y, n.dot(there.s - at.s) * n, {1, 1}, kCornerWeight, error});
 }
 
 }  // namespace
 
-std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                                   const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                                   double width, double gap,
-                                   const std::function<bool(int, const SplineSurface&)>& accepts,
-                                   const Progress& progress) {
+JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
+                               const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
+                               const JoinLimits& limits,
+                               const std::function<bool(int, const SplineSurface&)>& accepts,
+                               const Progress& progress) {
   const auto rank = [&](int sheet) { return std::pair(bool(mayMove[sheet]), sheet); };
-  std::vector<char> stuck(sheets.size());  // could not be moved onto their curves
-  const auto meetsOnCurve = [&](const TangentCurve& curve) {
-    return curve.behind[0] && curve.behind[1] && mayMove[curve.sheet[0]] && mayMove[curve.sheet[1]];
-  };
+  std::vector<char> onCurve, ridge;  // by curve
+  for (const auto& curve : curves) {
+    onCurve.push_back(curve.smooth && mayMove[curve.sides[0].sheet] && mayMove[curve.sides[1].sheet]);
+    ridge.push_back(onCurve.back() && isRidge(angles(curve, sheets)));
+  }
+  std::vector<char> stuck(sheets.size()), turned(sheets.size());  // not on their curves; on them, and turned
   std::set<int> moved;
   /// \param onlyToStuck whether it has only to follow sheets that are stuck
   const auto move = [&](int k, bool onlyToStuck) {
-    // Where a surface bends within the tolerance, the sheet may have another tangent than it; to turn it there
-    // would lift it around.
-    for (const bool withTangents : {true, false}) {
+    for (const Turning turning : {Turning::ToFold, Turning::AwayFrom, Turning::None}) {
       progress.check();
       std::vector<SurfaceMove> moves;
       bool touches = false, toCurve = false, toStuck = false;
-      for (const auto& curve : curves)
+      for (std::size_t c = 0; c < curves.size(); ++c)
         for (const int side : {0, 1}) {
-          if (curve.sheet[side] != k) continue;
+          const auto& own = curves[c].sides[side];
+          if (own.sheet != k) continue;
           touches = true;
-          const int still = curve.sheet[1 - side];
-          const StripMoves strip(*curve.sampled, side, sheets[k]);
-          const bool onCurve = meetsOnCurve(curve);
-          if (onCurve && !stuck[still] && !stuck[k]) {
-            appendMovesToCurve(strip, *curve.behind[side], withTangents, moves);
+          const int still = curves[c].sides[1 - side].sheet;
+          const StripMoves strip(*curves[c].sampled, side, sheets[k]);
+          if (onCurve[c] && !stuck[still] && !stuck[k]) {
+            appendMovesToCurve(strip, own.onLeft, ridge[c], angles(curves[c], sheets),
+                               turned[still] ? 1 : 0.5, turning, limits.gap, moves);
             toCurve = true;
-          } else if (onCurve ? stuck[still] && (!stuck[k] || still < k) : rank(still) < rank(k)) {
-            appendMovesOnto(strip, sheets[still], curve.sampled->foot[1 - side], width, moves);
-            toStuck |= onCurve;
+          } else if (onCurve[c] ? stuck[still] && (!stuck[k] || still < k) : rank(still) < rank(k)) {
+            appendMovesOnto(strip, sheets[still], curves[c].sampled->foot[1 - side], limits.width, limits.gap,
+                            moves);
+            toStuck |= onCurve[c];
           }
         }
-      if (!touches || (onlyToStuck && !toStuck) || (!withTangents && !toCurve)) return;
-      for (const auto& corner : corners) appendCornerMove(corner, k, sheets, rank, moves);
+      if (!touches || (onlyToStuck && !toStuck) || (turning != Turning::ToFold && !toCurve)) return;
+      for (const auto& corner : corners) appendCornerMove(corner, k, sheets, rank, limits.gap, moves);
       if (moves.empty()) return;
-      const int poles = int(sheets[k].surface.poles.size());
-      auto surface =
-          movedSurface(sheets[k].surface, moves, gap / 2, kMorePoles * poles + kFewPoles, progress);
+      const int most = kMorePoles * int(sheets[k].surface.poles.size()) + kFewPoles;
+      auto surface = movedSurface(sheets[k].surface, moves, toCurve ? kFadeFromCurve : kFade, most, progress);
       if (surface && accepts(k, *surface)) {
         sheets[k].surface = std::move(*surface);
         moved.insert(k);
+        turned[k] = toCurve && turning != Turning::None;
         return;
       }
-      if (!withTangents && !onlyToStuck) stuck[k] = true;
+      if (turning == Turning::None && !onlyToStuck) stuck[k] = true;
     }
+  };
+  const auto folds = [&](std::size_t c) {
+    return onCurve[c] && turned[curves[c].sides[0].sheet] && turned[curves[c].sides[1].sheet];
   };
   for (const bool onlyToStuck : {false, true})
     for (int k = 0; k < int(sheets.size()); ++k)
       if (mayMove[k]) move(k, onlyToStuck);
-  return {moved.begin(), moved.end()};
+  JoinedSheets result{{moved.begin(), moved.end()}, {}};
+  for (std::size_t c = 0; c < curves.size(); ++c) result.folded.push_back(folds(c));
+  return result;
 }
 
 ChartDeviation deviationFrom(const SplineSurface& surface, const Region& region, const GridMap& map,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -13,25 +14,42 @@ namespace trimquad {
 
 /// A curve along which two sheets, that were fitted apart, touch.
 struct TangentCurve {
+  struct Side {
+    int sheet;
+    bool onLeft;  ///< of the curve, seen from outside
+  };
   const SampledCurve* sampled;
-  int sheet[2];                    ///< by side
-  const TrueSurface* behind[2]{};  ///< by side: what the sheet was fitted to, where it ends on this very curve
+  std::array<Side, 2> sides;
+  bool smooth;  ///< whether the curve is the model's own, no chain of mesh edges
 };
 
 /// Largest gap that two sheets have after one has moved onto the other, by the model's diagonal.
 inline constexpr double kTangentGap = 2e-7;
 
+struct JoinedSheets {
+  std::vector<int> moved;    ///< the sheets that have moved, ascending
+  std::vector<char> folded;  ///< by curve: whether its sheets now have a slight edge there
+};
+
+/// How sheets are to be joined, model units.
+struct JoinLimits {
+  double width;  ///< half of that of the strip in which one comes to be nearly tangent to the other
+  double gap;    ///< what may be left between them
+};
+
 /// Moves sheets so that they agree with the others on the curves along which these touch them, and nearly in
-/// a strip around, and in the corners in which such curves end. Where both may move and the surfaces behind
-/// them are known, both come to lie on the curve, tangent to these; else one moves onto the other, the later
-/// one, or the one that may. \param mayMove by sheet \param width   half of the strip's, model units \param gap     what may
-/// be left between the sheets, model units \param accepts (sheet, new surface) whether it may become so
-/// Returns the sheets that have moved, ascending.
-std::vector<int> joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                                   const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                                   double width, double gap,
-                                   const std::function<bool(int, const SplineSurface&)>& accepts,
-                                   const Progress& progress);
+/// a strip around, and in the corners in which such curves end. Where both may move and the curve is smooth,
+/// both come to lie on it, and are turned about it until they make an edge of a fraction of a degree (a
+/// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, or the
+/// one that may. \param mayMove by sheet \param accepts (sheet, new surface) whether it may become so
+JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
+                               const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
+                               const JoinLimits& limits,
+                               const std::function<bool(int, const SplineSurface&)>& accepts,
+                               const Progress& progress);
+
+/// Sine of the angle between folded sheets from which on their intersection is looked for.
+inline constexpr double kSmallestFold = 5e-4;
 
 /// How far a region of one chart lies from a surface other than the fitted one.
 ChartDeviation deviationFrom(const SplineSurface& surface, const Region& region, const GridMap& map,

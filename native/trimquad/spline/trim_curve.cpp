@@ -73,8 +73,8 @@ void snapToSeam(const Sheet& sheet, Eigen::Vector2d& end) {
   if (std::abs(end[0] - seam) < rounding) end[0] = seam;
 }
 
-/// The largest distance of a piece's curve from its images on the sheets: of many samples, and around the largest
-/// of these of what golden sections find.
+/// The largest distance of a piece's curve from its images on the sheets: of many samples, and around the
+/// largest of these of what golden sections find.
 double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheets) {
   const auto gapAt = [&](double s) {
     const Eigen::Vector3d p = piece.curve.point(s);
@@ -297,7 +297,8 @@ std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& si
 
 std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    const std::vector<SheetSide>& sides, double tolerance,
-                                                   double reach, const Progress& progress) {
+                                                   double reach, double smallestAngle,
+                                                   const Progress& progress) {
   std::vector<CurveSample<3>> samples;
   for (std::size_t i = 0; i < sampled.s.size(); ++i)
     samples.push_back({sampled.s[i], sampled.t[i], sampled.point[i], Eigen::Matrix3d::Identity()});
@@ -315,9 +316,9 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
     guesses.push_back(guess);
   }
   IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), std::move(guesses),
-                                 reach);
+                                 reach, smallestAngle);
   // The ends themselves may lie beyond the surfaces' common point; the corners settle those.
-  constexpr int tests = 64;
+  const int tests = smallestAngle < kSmallestCrossing ? 2048 : 64;
   for (int i = 0; i < tests; ++i) {
     progress.check();
     if (!intersection.parameters(sampled.s.back() * (i + 0.5) / tests)) return {};

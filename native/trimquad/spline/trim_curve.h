@@ -58,10 +58,12 @@ struct CurveCloseness {
 std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& side,
                                 const CurveCloseness& closeness, const Progress& progress);
 
-/// The curve in which two sheets cut each other along a model curve; null where they are too nearly tangent.
+/// The curve in which two sheets cut each other along a model curve; null where the sine of the angle between
+/// them is below `smallestAngle`.
 std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    const std::vector<SheetSide>& sides, double tolerance,
-                                                   double reach, const Progress& progress);
+                                                   double reach, double smallestAngle,
+                                                   const Progress& progress);
 
 /// Pieces of the intersection curve between the points nearest to `start` and `end`, cut at both sheets'
 /// seams. Null where it has a gap after all.

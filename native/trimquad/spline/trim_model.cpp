@@ -20,6 +20,8 @@ constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
 /// Parts of the tolerance: how closely the edge of sheets that touch follows its curve, on which they are
 /// made to agree, and half of the width of the strip in which they nearly do.
 constexpr double kTouchCloseness = 0.05, kStripWidth = 0.1;
+/// Part of the gap that sheets which bend sharply are joined to.
+constexpr double kFinerGap = 0.1;
 /// How far a region may be from a surface that was moved to agree with its neighbours: by the tolerance.
 constexpr double kMovedDeviation = 1.2;
 /// Edges between touching sheets that are further apart, by the model's diagonal, are loose.
@@ -113,7 +115,7 @@ bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface) {
   const int r = sheetRegion_[sheet];
   const auto deviation =
       deviationFrom(surface, model_.regions[r], *maps_[r], *fitted_[r], threads_, progress_);
-  if (deviation.max > std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)) return false;
+  if (!(deviation.max <= std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation))) return false;
   moved_[r] = deviation;
   return true;
 }
@@ -167,26 +169,48 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
 }
 
 /// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
+/// Where the surfaces bend sharply, a fold says where their intersection is only if they agree more closely.
 void ModelTrimmer::joinTangent() {
-  std::vector<TangentCurve> tangent;
-  for (const auto& [id, curve] : curves_) {
-    if (curve.sides.size() != 2 || curve.intersection) continue;
-    const auto& sides = curve.sides;
-    auto& added =
-        tangent.emplace_back(TangentCurve{&curve.sampled[0], {sheetOf(*sides[0].run), sheetOf(*sides[1].run)}});
-    for (const int side : {0, 1}) added.behind[side] = model_.regions[sides[side].run->region].surface.get();
+  std::vector<int> touching;
+  for (const auto& [id, curve] : curves_)
+    if (curve.sides.size() == 2 && !curve.intersection) touching.push_back(id);
+  const auto fitted = sheets_;
+  const auto moved = moved_;
+  for (const double part : {1.0, kFinerGap}) {
+    sheets_ = fitted;
+    moved_ = moved;
+    if (joinTangent(touching, part * kTangentGap * model_.diagonal)) return;
   }
-  const auto moved = joinTangentSheets(
-      sheets_, tangent, tangentCorners(), mayMove(), kStripWidth * tolerance_, kTangentGap * model_.diagonal,
+}
+
+/// Whether the curves of all folds are found.
+bool ModelTrimmer::joinTangent(const std::vector<int>& touching, double gap) {
+  std::vector<TangentCurve> tangent;
+  const auto sideOf = [&](const SheetSide& side) {
+    return TangentCurve::Side{sheetOf(*side.run), side.run->forward};
+  };
+  for (const int id : touching) {
+    auto& curve = curves_.at(id);
+    curve.intersection.reset();
+    curve.folded = false;
+    tangent.push_back(
+        {&curve.sampled[0], {sideOf(curve.sides[0]), sideOf(curve.sides[1])}, !curvePieces_->isPolyline(id)});
+  }
+  const auto joined = joinTangentSheets(
+      sheets_, tangent, tangentCorners(), mayMove(), {kStripWidth * tolerance_, gap},
       [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
+  for (std::size_t k = 0; k < touching.size(); ++k) curves_.at(touching[k]).folded = joined.folded[k];
+  bool found = true;
   for (auto& [id, curve] : curves_) {
     const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {
-      return std::binary_search(moved.begin(), moved.end(), sheetOf(*side.run));
+      return std::binary_search(joined.moved.begin(), joined.moved.end(), sheetOf(*side.run));
     });
     if (!touched) continue;
     sample(id, curve);
-    if (curve.intersection) intersect(curve);
+    if (curve.intersection || curve.folded) intersect(curve);
+    found &= !curve.folded || curve.intersection;
   }
+  return found;
 }
 
 PieceLoop ModelTrimmer::borderPiece(int region, const Layout::Stretch& stretch,

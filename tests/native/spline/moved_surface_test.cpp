@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kError = 1e-6;
+constexpr double kError = 1e-6, kFade = 1;
 constexpr int kMaxPoles = 3000;
 
 SplineSurface sheet() {
@@ -22,7 +22,7 @@ std::vector<SurfaceMove> movesOnLine(const std::function<double(double)>& height
   constexpr int kSamples = 400;
   for (int i = 0; i <= kSamples; ++i) {
     const double x = 10.0 * i / kSamples;
-    moves.push_back({{x, 3}, {0, 0, height(x)}, {1, 0}, 10.0 / kSamples, true});
+    moves.push_back({{x, 3}, {0, 0, height(x)}, {1, 0}, 10.0 / kSamples, kError});
   }
   return moves;
 }
@@ -43,7 +43,7 @@ double wave(double x) {
 
 TEST(MovedSurface, followsSmoothMovesAndRestsFarAway) {
   const auto moves = movesOnLine(wave);
-  const auto moved = movedSurface(sheet(), moves, kError, kMaxPoles, Progress());
+  const auto moved = movedSurface(sheet(), moves, kFade, kMaxPoles, Progress());
   ASSERT_TRUE(moved);
   EXPECT_LE(largestMiss(*moved, moves), 1.01 * kError);
   EXPECT_LE(moved->countV, sheet().countV) << "the moves vary along u only";
@@ -53,13 +53,13 @@ TEST(MovedSurface, followsSmoothMovesAndRestsFarAway) {
 
 TEST(MovedSurface, comesCloseToMovesWithASmallStep) {
   const auto moves = movesOnLine([](double x) { return wave(x) + (x > 4.03 ? 4e-5 : 0); });
-  const auto moved = movedSurface(sheet(), moves, kError, kMaxPoles, Progress());
+  const auto moved = movedSurface(sheet(), moves, kFade, kMaxPoles, Progress());
   ASSERT_TRUE(moved);
   EXPECT_LE(largestMiss(*moved, moves), 5e-5);
 }
 
 TEST(MovedSurface, givesUpOnRoughMoves) {
-  EXPECT_FALSE(movedSurface(sheet(), movesOnLine([](double x) { return x > 4.03 ? 1e-3 : 0; }), kError,
+  EXPECT_FALSE(movedSurface(sheet(), movesOnLine([](double x) { return x > 4.03 ? 1e-3 : 0; }), kFade,
                             kMaxPoles, Progress()));
 }
 

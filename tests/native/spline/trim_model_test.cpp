@@ -117,67 +117,56 @@ double slowlyVarying(double x, double y) {
   return 2e-4 * (std::sin(1.1 * x + 0.3) + std::cos(1.7 * y));
 }
 
-TEST(TrimModel, tangentSheetsAreMovedOntoEachOther) {
-  auto sheets = tangentSheets(slowlyVarying);
-  const auto model = sheets.trim();
-  EXPECT_EQ(model.looseEdges, 0);
-  EXPECT_EQ(model.edges.size(), 7u);
-  EXPECT_LE(measuredGaps(model).edge, 2e-7 * sheets.model.diagonal);
-  EXPECT_EQ(model.moved.size(), 1u);
-  const auto &before = sheets.fits[1]->surface, &after = model.faces[1].surface;
-  EXPECT_EQ(model.faces[0].surface.poles, sheets.fits[0]->surface.poles);
-  for (double x = 5; x <= 10; x += 0.25)
-    for (double y = 0; y <= 6; y += 0.25) {
-      const double moved = (after.point(x, y) - before.point(x, y)).norm();
-      EXPECT_LE(moved, x < 7.5 ? 5e-4 : 1e-4) << x << " " << y;
-    }
-}
-
-/// What wavy() gives, as the surface behind triangles.
-class WavySurface : public TrueSurface {
- public:
-  Foot closest(const Eigen::Vector3d& p) const override {
-    const auto along = [](const Eigen::Vector2d& x, int axis) -> Eigen::Vector3d {
-      constexpr double h = 1e-6;
-      const Eigen::Vector2d step = h * Eigen::Vector2d::Unit(axis);
-      return (wavy(x[0] + step[0], x[1] + step[1]) - wavy(x[0] - step[0], x[1] - step[1])) / (2 * h);
-    };
-    Eigen::Vector2d x = p.head<2>();
-    Eigen::Matrix<double, 3, 2> m;
-    for (int step = 0; step < 20; ++step) {
-      m << along(x, 0), along(x, 1);
-      x += (m.transpose() * m).ldlt().solve(m.transpose() * (p - wavy(x[0], x[1])));
-    }
-    return {wavy(x[0], x[1]), m.col(0).cross(m.col(1)).normalized()};
-  }
-  Foot closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d&) const override { return closest(p); }
-  Curvature curvature(const Eigen::Vector3d&) const override { throw std::logic_error("not asked for"); }
-};
-
-TEST(TrimModel, tangentSheetsAreBothMovedOntoTheModelsCurve) {
+TEST(TrimModel, tangentSheetsMeetInAFoldOnTheModelsCurve) {
   auto sheets = tangentSheets(slowlyVarying);
   for (auto& pole : sheets.fits[0]->surface.poles) pole[2] -= 1.5e-4;
-  for (auto& region : sheets.model.regions) region.surface = std::make_shared<WavySurface>();
   const auto model = sheets.trim();
-  EXPECT_EQ(model.looseEdges, 0);
+  expectExact(model);
+  EXPECT_EQ(model.edges.size(), 7u);
   EXPECT_EQ(model.moved.size(), 2u);
-  EXPECT_LE(measuredGaps(model).edge, 2e-7 * sheets.model.diagonal);
   for (double y = 0.1; y < 6; y += 0.1) {
     const Eigen::Vector3d p = wavy(5, y);
     std::vector<Eigen::Vector3d> normals;
     for (const auto& face : model.faces) {
       const Eigen::Vector2d foot = face.surface.footPoint(p, {5, y});
       const auto jet = face.surface.jet(foot[0], foot[1]);
-      EXPECT_LE((jet.s - p).norm(), 2e-7 * sheets.model.diagonal) << y;
+      EXPECT_LE((jet.s - p).norm(), 1.5e-7 * sheets.model.diagonal) << y;
       normals.push_back(jet.su.cross(jet.sv).normalized());
     }
-    EXPECT_LE(normals[0].cross(normals[1]).norm(), 1e-4) << y;
+    EXPECT_NEAR(normals[0].cross(normals[1]).norm(), 0.01, 0.002) << y;
+  }
+  for (int k : {0, 1})
+    for (double x = 5 * k; x <= 5 + 5 * k; x += 0.25)
+      for (double y = 0; y <= 6; y += 0.25) {
+        const auto &before = sheets.fits[k]->surface, &after = model.faces[k].surface;
+        const double moved = (after.point(x, y) - before.point(x, y)).norm();
+        EXPECT_LE(moved, std::abs(x - 5) < 2.5 ? 2e-3 : 2e-4) << x << " " << y;
+      }
+}
+
+TEST(TrimModel, sheetsThatMakeAnEdgeInPlacesOnlyKeepItThere) {
+  // Tangent at both ends, an edge of a tenth of a right angle between them.
+  const auto slope = [](double y) { return 0.16 * std::exp(-2 * (y - 3) * (y - 3)); };
+  auto sheets =
+      tangentSheets([&](double x, double y) { return -slope(y) * (x - 5) * std::exp(-(x - 5) * (x - 5)); });
+  const auto model = sheets.trim();
+  expectExact(model);
+  EXPECT_EQ(model.edges.size(), 7u);
+  for (double y = 0.1; y < 6; y += 0.1) {
+    std::vector<Eigen::Vector3d> normals;
+    for (const auto& face : model.faces) {
+      const Eigen::Vector2d foot = face.surface.footPoint(wavy(5, y), {5, y});
+      const auto jet = face.surface.jet(foot[0], foot[1]);
+      normals.push_back(jet.su.cross(jet.sv).normalized());
+    }
+    const double angle = normals[0].cross(normals[1]).norm();
+    EXPECT_GE(angle, 0.005) << y;
+    EXPECT_LE(angle, std::max(0.015, slope(y))) << y;
   }
 }
 
 TEST(TrimModel, aSheetThatMayNotMoveOntoTheCurveIsFollowedByTheOther) {
   auto sheets = tangentSheets(slowlyVarying);
-  for (auto& region : sheets.model.regions) region.surface = std::make_shared<WavySurface>();
   // Its inner double knot keeps it from moving.
   sheets.fits[0]->surface = withKnotU(sheets.fits[0]->surface, sheets.fits[0]->surface.knotsU[10]);
   for (auto& pole : sheets.fits[0]->surface.poles) pole[2] -= 1.5e-4;
@@ -185,7 +174,12 @@ TEST(TrimModel, aSheetThatMayNotMoveOntoTheCurveIsFollowedByTheOther) {
   EXPECT_EQ(model.looseEdges, 0);
   ASSERT_EQ(model.moved.size(), 1u);
   EXPECT_EQ(model.moved.begin()->first, 1);
+  EXPECT_EQ(model.edges.size(), 7u);
   EXPECT_LE(measuredGaps(model).edge, 2.5e-7 * sheets.model.diagonal);
+  const auto &before = sheets.fits[1]->surface, &after = model.faces[1].surface;
+  for (double x = 5; x <= 10; x += 0.25)
+    for (double y = 0; y <= 6; y += 0.25)
+      EXPECT_LE((after.point(x, y) - before.point(x, y)).norm(), x < 7.5 ? 1e-3 : 2e-4) << x << " " << y;
 }
 
 TEST(TrimModel, sheetsAroundACornerAgreeThere) {
@@ -204,7 +198,7 @@ TEST(TrimModel, closedSheetsAreMovedAndStayClosed) {
   auto tubes = tangentTubes([](double u) { return 2e-4 * std::sin(2 * std::numbers::pi * 3 * u / kRings); });
   const auto model = tubes.trim();
   EXPECT_EQ(model.looseEdges, 0);
-  EXPECT_EQ(model.moved.size(), 1u);
+  EXPECT_EQ(model.moved.size(), 2u);
   EXPECT_LE(measuredGaps(model).edge, 2e-7 * tubes.model.diagonal);
   const SplineSurface& moved = model.faces[1].surface;
   for (double v = 1; v < 9; v += 0.5) {
