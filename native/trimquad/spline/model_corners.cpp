@@ -101,7 +101,8 @@ CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
   }
   if (points.empty())
     return cornerPoint(p, sheets, guess, reach_,
-                       endsFold(uses_[members.front()].corner) ? kSmallestFold : kSmallestCrossing);
+                       members.size() == 2 && endsFold(uses_[members.front()].corner) ? kSmallestFold
+                                                                                      : kSmallestCrossing);
   CornerPoint corner{Eigen::Vector3d::Zero(), guess};
   bool placed = false;
   for (const auto& [region, point] : points) {
