@@ -132,7 +132,7 @@ void appendMovesOnto(const StripMoves& strip, const Sheet& still, const std::vec
 }
 
 /// The sines of the angles between a curve's sheets, by sample: above 0 where they make a ridge, seen from
-/// outside, below where they make a valley; infinite where it is no sharper than a right angle.
+/// outside, below where they make a valley; infinite from a right angle on.
 std::vector<double> angles(const TangentCurve& curve, const std::vector<Sheet>& sheets) {
   std::vector<double> found;
   const StripMoves strips[] = {{*curve.sampled, 0, sheets[curve.sides[0].sheet]},
@@ -140,8 +140,8 @@ std::vector<double> angles(const TangentCurve& curve, const std::vector<Sheet>& 
   for (std::size_t i = 0; i < strips[0].samples(); ++i) {
     const Eigen::Vector3d n[] = {normal(strips[0].jet(i)), normal(strips[1].jet(i))};
     const int left = curve.sides[0].onLeft ? 0 : 1;
-    const bool sharp = n[0].dot(n[1]) <= 0;
-    found.push_back(sharp ? HUGE_VAL : n[left].cross(n[1 - left]).dot(strips[0].direction(i)));
+    const double sine = n[left].cross(n[1 - left]).dot(strips[0].direction(i));
+    found.push_back(n[0].dot(n[1]) > 0 ? sine : std::copysign(HUGE_VAL, sine));
   }
   return found;
 }
