@@ -14,7 +14,7 @@ namespace {
 
 /// The mean symmetric Dirichlet energy up to which a map without singularities is worth more than one with
 /// them; 4 is an isometry.
-constexpr double kLittleDistortion = 4.5;
+constexpr double kLittleDistortion = 4.3;
 
 /// How far the guidance reaches at full weight; see crossField.
 constexpr double kReach = 40;
