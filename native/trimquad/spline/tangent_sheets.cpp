@@ -78,7 +78,7 @@ class StripMoves {
     const Eigen::Vector2d run = inPlane(at, direction(i));
     const auto [before, after] = around(i);
     const double length = run.norm() * (sampled_.s[after] - sampled_.s[before]) / 2;
-    moves.push_back({y, by, run, facing ? kBesideWeight * length : length, error});
+    moves.push_back({y, by, run, error < HUGE_VAL ? length : kBesideWeight * length, error});
     return true;
   }
   /// Makes the last move one of the places on both sides of it as well, so that the sheet is not turned, or
@@ -118,9 +118,8 @@ void appendMovesOnto(const StripMoves& strip, const Sheet& still, const std::vec
     if (!within(still, x)) return;
     std::optional<Eigen::Vector3d> facing;
     if (across != 0) facing = n;
-    const bool exact = along == 0 && across == 0;
-    if (strip.append(i, still.jet(x).s, exact ? error : HUGE_VAL, facing, moves) && !exact && !facing)
-      moves.back().weight *= kBesideWeight;
+    const bool onCurve = along == 0 && across == 0;
+    strip.append(i, still.jet(x).s, onCurve ? error : HUGE_VAL, facing, moves);
   };
   for (std::size_t i = 0; i < strip.samples(); ++i)
     for (const int line : {-1, 0, 1}) append(i, 0, line * width);

@@ -94,6 +94,8 @@ double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheet
   addBetween(piece.curve.knots);
   for (const auto& image : piece.onSheet) addBetween(image.knots);
   std::sort(places.begin(), places.end());
+  // Curves that were made together have the same knots.
+  places.erase(std::unique(places.begin(), places.end()), places.end());
   std::vector<double> gaps;
   for (const double s : places) gaps.push_back(gapAt(s));
   const double sampled = *std::max_element(gaps.begin(), gaps.end());
