@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -102,7 +103,7 @@ class ModelTrimmer {
   std::vector<char> mayMove() const;
   void meetInCorners();
   void joinTangent();
-  bool joinTangent(const std::vector<int>& touching, double gap);
+  bool joinTangent(const std::vector<int>& touching, double gap, std::set<int>& resampled);
 
   void placeSeams() {
     for (int k = 0; k < int(sheets_.size()); ++k) {

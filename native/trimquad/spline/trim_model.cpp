@@ -176,15 +176,17 @@ void ModelTrimmer::joinTangent() {
     if (curve.sides.size() == 2 && !curve.intersection) touching.push_back(id);
   const auto fitted = sheets_;
   const auto moved = moved_;
+  std::set<int> resampled;
   for (const double part : {1.0, kFinerGap}) {
     sheets_ = fitted;
     moved_ = moved;
-    if (joinTangent(touching, part * kTangentGap * model_.diagonal)) return;
+    if (joinTangent(touching, part * kTangentGap * model_.diagonal, resampled)) return;
   }
 }
 
 /// Whether the curves of all folds are found.
-bool ModelTrimmer::joinTangent(const std::vector<int>& touching, double gap) {
+/// \param resampled sheets whose curves are not sampled as they were fitted; those that move now are added
+bool ModelTrimmer::joinTangent(const std::vector<int>& touching, double gap, std::set<int>& resampled) {
   std::vector<TangentCurve> tangent;
   const auto sideOf = [&](const SheetSide& side) {
     return TangentCurve::Side{sheetOf(*side.run), side.run->forward};
@@ -200,10 +202,11 @@ bool ModelTrimmer::joinTangent(const std::vector<int>& touching, double gap) {
       sheets_, tangent, tangentCorners(), mayMove(), {kStripWidth * tolerance_, gap},
       [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
   for (std::size_t k = 0; k < touching.size(); ++k) curves_.at(touching[k]).folded = joined.folded[k];
+  resampled.insert(joined.moved.begin(), joined.moved.end());
   bool found = true;
   for (auto& [id, curve] : curves_) {
     const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {
-      return std::binary_search(joined.moved.begin(), joined.moved.end(), sheetOf(*side.run));
+      return resampled.count(sheetOf(*side.run)) > 0;
     });
     if (!touched) continue;
     sample(id, curve);
