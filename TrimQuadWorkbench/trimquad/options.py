@@ -147,11 +147,13 @@ class Options:
         return vertices, [tuple(numbers[i : i + 3]) for i in range(0, len(numbers), 3)]
 
     def resolved(self, kind, area, diagonal, default_threads):
-        """A copy with every None replaced, for an input of `kind` ('cad' or 'mesh') of that area and diagonal.
+        """A copy with every None replaced, paths as text, for an input of `kind` ('cad' or 'mesh') of that area and diagonal.
 
         Raises Error(input) where the edge length does not fit the input.
         """
-        options = dataclasses.replace(self)
+        options = dataclasses.replace(
+            self, field=os.fspath(self.field), pattern=None if self.pattern is None else os.fspath(self.pattern)
+        )
         if options.edge_length is None:
             options.quads = options.quads or DEFAULT_QUADS
             if not area > 0:

@@ -1,4 +1,6 @@
 """Grid maps as textured models, with the program's own picture on every quad or one of the user's."""
+import json
+
 import FreeCAD  # noqa: F401 (before its modules)
 import numpy
 import Part
@@ -124,6 +126,16 @@ def test_patterns_that_are_no_pictures_are_refused_with_one_line(tmp_path, capsy
     (line,) = capsys.readouterr().err.splitlines()
     assert status == 2 and str(path) in line and words in line
     assert not (tmp_path / "out").exists()
+
+
+def test_a_report_names_patterns_and_fields_that_were_given_as_paths(tmp_path):
+    halves(tmp_path / "halves.png")
+    (tmp_path / "field.txt").write_text("0 0 0 1 0 0\n")
+    options = trimquad.Options(quads=20, pattern=tmp_path / "halves.png", field=tmp_path / "field.txt",
+                               write=["texture", "report"])
+    trimquad.convert(Part.makePlane(30, 20), options).write(str(tmp_path / "out"))
+    written = json.loads((tmp_path / "out" / "report.json").read_text())["options"]
+    assert written["pattern"] == str(tmp_path / "halves.png") and written["field"] == str(tmp_path / "field.txt")
 
 
 def test_a_pattern_without_a_texture_is_refused(capsys, tmp_path):
