@@ -37,7 +37,7 @@ def trim(result, progress):
     native = load()
     started = time.monotonic()
     elsewhere = 0.0
-    checks = native.FaceChecks()
+    checks, memory = native.FaceChecks(), native.TrimMemory()
     while any(r.fitted is not None for r in result.regions):
         try:
             with progress.stage("trim") as native_progress:
@@ -48,6 +48,7 @@ def trim(result, progress):
                     result.fit_tolerance,
                     native_progress,
                     result.options.threads,
+                    memory,
                 )
                 result.native_shape = native.assemble(result.spline)
             if not _refit_faulty(result, checks, progress):

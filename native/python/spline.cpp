@@ -95,8 +95,12 @@ void bindSpline(py::module_& m) {
         }
         return faces;
       });
+  py::class_<TrimMemory>(
+      m, "TrimMemory",
+      "What the steps of trims gave, so that a trim repeats only what changed since the last.")
+      .def(py::init<>());
   m.def("trim_model", &trimModel, py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"),
-        py::arg("progress"), py::arg("threads"), Released());
+        py::arg("progress"), py::arg("threads"), py::arg("memory") = nullptr, Released());
   m.def("fitted_as_moved", &fittedAsMoved, py::arg("fitted"), py::arg("model"), py::arg("region"),
         "the fit of one of the moved regions, with the surface and the deviations that it has in the model");
 }

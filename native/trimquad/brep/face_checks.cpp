@@ -4,8 +4,8 @@
 #include <TopoDS_Compound.hxx>
 #include <optional>
 #include <set>
-#include <type_traits>
 
+#include "trimquad/base/byte_key.h"
 #include "trimquad/base/parallel.h"
 #include "trimquad/brep/assemble.h"
 #include "trimquad/brep/occt_guard.h"
@@ -43,70 +43,46 @@ class Description {
 
   void add(const SplineFace& face) {
     const auto& s = face.surface;
-    for (const int n : {s.degreeU, s.degreeV, s.countU, s.countV}) append(n);
-    append(s.knotsU);
-    append(s.knotsV);
-    append(s.poles);
-    append(face.loops.size());
+    for (const int n : {s.degreeU, s.degreeV, s.countU, s.countV}) key_.add(n);
+    key_.add(s.knotsU).add(s.knotsV).add(s.poles).add(face.loops.size());
     for (const auto& loop : face.loops) {
-      append(loop.size());
+      key_.add(loop.size());
       for (const auto& coedge : loop) {
         add(coedge.edge);
-        append(coedge.forward);
+        key_.add(coedge.forward);
         add(coedge.curve);
       }
     }
   }
-  std::string bytes() && { return std::move(bytes_); }
+  std::string bytes() && { return std::move(key_).bytes(); }
 
  private:
-  template <class Value>
-  void append(const Value& value) {
-    static_assert(std::is_arithmetic_v<Value>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void append(const std::vector<double>& values) {
-    append(values.size());
-    for (const double x : values) append(x);
-  }
-  template <int Dim>
-  void append(const Eigen::Matrix<double, Dim, 1>& point) {
-    for (int k = 0; k < Dim; ++k) append(point[k]);
-  }
-  template <int Dim>
-  void append(const std::vector<Eigen::Matrix<double, Dim, 1>>& points) {
-    append(points.size());
-    for (const auto& p : points) append(p);
-  }
   template <int Dim>
   void add(const SplineCurve<Dim>& curve) {
-    append(curve.degree);
-    append(curve.knots);
-    append(curve.poles);
+    key_.add(curve.degree).add(curve.knots).add(curve.poles);
   }
   void add(SplineVertexId id) {
     const auto [place, isNew] = vertices_.try_emplace(id, int(vertices_.size()));
-    append(place->second);
+    key_.add(place->second);
     if (!isNew) return;
     const auto& vertex = model_.vertices[id.index];
-    append(vertex.point);
-    append(vertex.tolerance);
+    key_.add(vertex.point).add(vertex.tolerance);
   }
   void add(SplineEdgeId id) {
     const auto [place, isNew] = edges_.try_emplace(id, int(edges_.size()));
-    append(place->second);
+    key_.add(place->second);
     if (!isNew) return;
     const auto& edge = model_.edges[id.index];
     add(edge.curve);
     add(edge.start);
     add(edge.end);
-    append(edge.tolerance);
+    key_.add(edge.tolerance);
   }
 
   const SplineModel& model_;
   std::map<SplineVertexId, int> vertices_;
   std::map<SplineEdgeId, int> edges_;
-  std::string bytes_;
+  ByteKey key_;
 };
 
 }  // namespace

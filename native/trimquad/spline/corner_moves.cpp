@@ -6,7 +6,6 @@
 #include <set>
 
 #include "trimquad/spline/corner_point.h"
-#include "trimquad/spline/moved_surface.h"
 
 namespace trimquad {
 namespace {
@@ -58,9 +57,7 @@ void appendMoves(const Sheet& sheet, const SheetCorner::Use& use, const Eigen::V
 }  // namespace
 
 std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<SheetCorner>& corners,
-                               const std::vector<char>& mayMove, double error,
-                               const std::function<bool(int, const SplineSurface&)>& accepts,
-                               const Progress& progress) {
+                               const std::vector<char>& mayMove, double error, const SheetMover& mover) {
   struct Meeting {
     const SheetCorner::Use* use;
     Eigen::Vector3d point;
@@ -77,13 +74,10 @@ std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<She
     if (meetings[k].empty()) continue;
     const int poles = int(sheets[k].surface.poles.size());
     for (const bool withTangents : {true, false}) {
-      progress.check();
       std::vector<SurfaceMove> moves;
       for (const auto& meeting : meetings[k])
         appendMoves(sheets[k], *meeting.use, meeting.point, error, withTangents, moves);
-      auto surface = movedSurface(sheets[k].surface, moves, kFade, kMorePoles * poles + kFewPoles, progress);
-      if (!surface || !accepts(k, *surface)) continue;
-      sheets[k].surface = std::move(*surface);
+      if (!mover.move(sheets, k, moves, kFade, kMorePoles * poles + kFewPoles)) continue;
       moved.push_back(k);
       break;
     }

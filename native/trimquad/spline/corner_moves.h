@@ -1,11 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
-#include "trimquad/base/progress.h"
-#include "trimquad/spline/sheet.h"
+#include "trimquad/spline/sheet_mover.h"
 
 namespace trimquad {
 
@@ -25,12 +23,9 @@ struct SheetCorner {
 /// where it is known: in corners where they have no common point otherwise, as where more than three sheets
 /// meet or the edges of three are tangent (a cusp). The point is the model's own, or that of the sheets which
 /// may not move. A sheet fades back to where it was over about a quad.
-/// \param mayMove by sheet \param error what a corner may be missed by, model units \param accepts (sheet,
-/// new surface) whether it may become so
+/// \param mayMove by sheet \param error what a corner may be missed by, model units
 /// Returns the sheets that have moved, ascending.
 std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<SheetCorner>& corners,
-                               const std::vector<char>& mayMove, double error,
-                               const std::function<bool(int, const SplineSurface&)>& accepts,
-                               const Progress& progress);
+                               const std::vector<char>& mayMove, double error, const SheetMover& mover);
 
 }  // namespace trimquad

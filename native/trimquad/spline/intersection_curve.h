@@ -29,6 +29,8 @@ class IntersectionCurve {
   IntersectionCurve(const Sheet& a, const Sheet& b, SpaceCurve reference, std::vector<Guess> guesses,
                     double reach, double smallestAngle);
 
+  /// Refers to copies of both sheets instead.
+  void setSheets(const Sheet& a, const Sheet& b) { a_ = &a, b_ = &b; }
   const Sheet& a() const { return *a_; }
   const Sheet& b() const { return *b_; }
   const SpaceCurve& reference() const { return reference_; }

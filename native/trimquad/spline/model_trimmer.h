@@ -19,6 +19,7 @@
 #include "trimquad/spline/tangent_sheets.h"
 #include "trimquad/spline/trim_curve.h"
 #include "trimquad/spline/trim_loops.h"
+#include "trimquad/spline/trim_memory.h"
 
 namespace trimquad {
 
@@ -45,20 +46,24 @@ struct CurveWithSides {
 class ModelTrimmer {
  public:
   ModelTrimmer(const Model& model, const std::vector<const GridMap*>& maps,
-               const std::vector<const FittedSurface*>& fitted, double tolerance, int threads,
-               const Progress& progress)
+               const std::vector<const FittedSurface*>& fitted, double tolerance, TrimMemory& memory,
+               int threads, const Progress& progress)
       : model_(model),
         maps_(maps),
         fitted_(fitted),
         tolerance_(tolerance),
         reach_(10 * tolerance + 1e-9 * model.diagonal),
+        memory_(memory),
         threads_(threads),
         progress_(progress) {
+    memory_.startTrim();
     makeSheets();
     collectRuns();
     meetInCorners();
+    numberSheets();
     forEachCurve([&](int id, CurveWithSides& curve) { sample(id, curve); });
     placeSeams();
+    numberSheets();
     forEachCurve([&](int, CurveWithSides& curve) { intersect(curve); });
     joinTangent();
     placeCorners();
@@ -69,6 +74,7 @@ class ModelTrimmer {
 
  private:
   void makeSheets();
+  void numberSheets();
   void collectRuns();
   void settleSplits(std::vector<CurveSplit>& splits);
   int sheetOf(const BoundaryRun& run) const { return firstSheet_[run.region] + run.chart; }
@@ -82,22 +88,10 @@ class ModelTrimmer {
     errors.attemptEach(int(all.size()), threads_, [&](int k) { step(all[k].first, *all[k].second); });
     errors.raise();
   }
-  void sample(int id, CurveWithSides& curve) {
-    // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
-    const double reach = 20 * tolerance_ + 1e-9 * model_.diagonal;
-    progress_.check();
-    curve.sampled.clear();
-    if (curve.sides.size() == 2)
-      curve.sampled.push_back(sampleCurve((*curvePieces_)[id], curve.sides, reach));
-    else
-      for (const auto& side : curve.sides)
-        curve.sampled.push_back(sampleCurve((*curvePieces_)[id], {side}, reach));
-  }
-  void intersect(CurveWithSides& curve) {
-    if (curve.sides.size() == 2)
-      curve.intersection = intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_,
-                                             curve.folded ? kSmallestFold : kSmallestCrossing, progress_);
-  }
+  void sample(int id, CurveWithSides& curve) const;
+  void intersect(CurveWithSides& curve) const;
+  ByteKey keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const;
+  long numberOfRegion(int r) const;
   std::vector<SheetCorner> tangentCorners() const;
   bool acceptsMoved(int sheet, const SplineSurface& surface);
   std::vector<char> mayMove() const;
@@ -141,6 +135,8 @@ class ModelTrimmer {
   };
   std::vector<CurveEdge> edgesOf(int id, const CurveWithSides& curve,
                                  const std::vector<double>& tolerances) const;
+  std::vector<TrimPiece> freeEdgeOf(int id, const SampledCurve& sampled, const SheetSide& side,
+                                    double tolerance) const;
   PieceLoop borderPiece(int region, const Layout::Stretch& stretch,
                         const std::vector<SplineEdgeId>& edges) const;
   void appendShells(SplineModel& result) const;
@@ -149,10 +145,12 @@ class ModelTrimmer {
   const std::vector<const GridMap*>& maps_;
   const std::vector<const FittedSurface*>& fitted_;
   double tolerance_, reach_;
+  TrimMemory& memory_;
   int threads_;
   const Progress& progress_;
   std::vector<int> corners_;  ///< by corner: the one that stands for all that short curves connect
   std::vector<Sheet> sheets_;
+  std::vector<long> sheetNumbers_;                   ///< of their surfaces, in keys of the memory
   std::vector<int> sheetRegion_, firstSheet_;        ///< by sheet; by region
   std::vector<std::optional<BorderLines>> borders_;  ///< by region, where it has several charts
   std::vector<BoundaryRun> runs_;                    ///< region by region, in the order of their loops

@@ -9,7 +9,6 @@
 
 #include "trimquad/base/parallel.h"
 #include "trimquad/spline/deviation.h"
-#include "trimquad/spline/moved_surface.h"
 #include "trimquad/spline/surface_samples.h"
 
 namespace trimquad {
@@ -212,9 +211,7 @@ void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<S
 
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
                                const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                               const JoinLimits& limits,
-                               const std::function<bool(int, const SplineSurface&)>& accepts,
-                               const Progress& progress) {
+                               const JoinLimits& limits, const SheetMover& mover) {
   const auto rank = [&](int sheet) { return std::pair(bool(mayMove[sheet]), sheet); };
   std::vector<char> onCurve, ridge;  // by curve
   for (const auto& curve : curves) {
@@ -226,7 +223,6 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
   /// \param onlyToStuck whether it has only to follow sheets that are stuck
   const auto move = [&](int k, bool onlyToStuck) {
     for (const Turning turning : {Turning::ToFold, Turning::AwayFrom, Turning::None}) {
-      progress.check();
       std::vector<SurfaceMove> moves;
       bool touches = false, toCurve = false, toStuck = false;
       for (std::size_t c = 0; c < curves.size(); ++c)
@@ -250,9 +246,7 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
       for (const auto& corner : corners) appendCornerMove(corner, k, sheets, rank, limits.gap, moves);
       if (moves.empty()) return;
       const int most = kMorePoles * int(sheets[k].surface.poles.size()) + kFewPoles;
-      auto surface = movedSurface(sheets[k].surface, moves, toCurve ? kFadeFromCurve : kFade, most, progress);
-      if (surface && accepts(k, *surface)) {
-        sheets[k].surface = std::move(*surface);
+      if (mover.move(sheets, k, moves, toCurve ? kFadeFromCurve : kFade, most)) {
         moved.insert(k);
         turned[k] = toCurve && turning != Turning::None;
         return;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <vector>
 
 #include "trimquad/base/progress.h"
@@ -41,12 +40,10 @@ struct JoinLimits {
 /// a strip around, and in the corners in which such curves end. Where both may move and the curve is smooth,
 /// both come to lie on it, and are turned about it until they make an edge of a fraction of a degree (a
 /// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, or the
-/// one that may. \param mayMove by sheet \param accepts (sheet, new surface) whether it may become so
+/// one that may. \param mayMove by sheet
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
                                const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                               const JoinLimits& limits,
-                               const std::function<bool(int, const SplineSurface&)>& accepts,
-                               const Progress& progress);
+                               const JoinLimits& limits, const SheetMover& mover);
 
 /// Sine of the angle between folded sheets from which on their intersection is looked for.
 inline constexpr double kSmallestFold = 5e-4;

@@ -50,6 +50,73 @@ void ModelTrimmer::makeSheets() {
   }
 }
 
+void ModelTrimmer::numberSheets() {
+  sheetNumbers_.clear();
+  for (const auto& sheet : sheets_) sheetNumbers_.push_back(memory_.numberOf(sheet.surface));
+}
+
+/// Of all that its deviation from a surface depends on.
+long ModelTrimmer::numberOfRegion(int r) const {
+  const Region& region = model_.regions[r];
+  const auto& mesh = maps_[r]->mesh;
+  ByteKey key;
+  key.add(region.surface.get());
+  for (const auto v : mesh.vertices()) key.add(mesh.point(v));
+  for (const auto h : mesh.halfedges())
+    key.add(mesh.to_vertex_handle(h).idx()).add(mesh.face_handle(h).idx());
+  const Chart& chart = fitted_[r]->chart;
+  key.add(chart.scale.bits).add(chart.period.value_or(0));
+  for (const auto& corner : chart.corner) key.add(corner.u).add(corner.v);
+  return memory_.numberOf("region", std::move(key));
+}
+
+/// Of all that a step depends on that goes from samples to curves on the sheets.
+ByteKey ModelTrimmer::keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const {
+  ByteKey key;
+  key.add(sampled.curve->curve.get()).add(sampled.curve->start == sampled.curve->end);
+  key.add(sampled.t).add(sampled.s).add(sampled.point).add(sampled.foot);
+  for (const auto& side : sides) key.add(sheetNumbers_[sheetOf(*side.run)]).add(side.start).add(side.end);
+  return key;
+}
+
+void ModelTrimmer::sample(int id, CurveWithSides& curve) const {
+  // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
+  const double reach = 20 * tolerance_ + 1e-9 * model_.diagonal;
+  const ModelCurve& piece = (*curvePieces_)[id];
+  progress_.check();
+  curve.sampled.clear();
+  const auto sampled = [&](const std::vector<SheetSide>& sides) {
+    ByteKey key;
+    key.add(piece.curve.get()).add(reach);
+    for (const auto& side : sides)
+      key.add(sheetNumbers_[sheetOf(*side.run)]).add(side.run->t).add(side.run->uv);
+    // The true curve is kept, so that its address means no other.
+    using Sampled = std::pair<SampledCurve, std::shared_ptr<const TrueCurve>>;
+    curve.sampled.push_back(
+        memory_
+            .recall<Sampled>("sample", std::move(key),
+                             [&] { return Sampled(sampleCurve(piece, sides, reach), piece.curve); })
+            .first);
+    curve.sampled.back().curve = &piece;
+  };
+  if (curve.sides.size() == 2)
+    sampled(curve.sides);
+  else
+    for (const auto& side : curve.sides) sampled({side});
+}
+
+void ModelTrimmer::intersect(CurveWithSides& curve) const {
+  if (curve.sides.size() != 2) return;
+  const double smallestAngle = curve.folded ? kSmallestFold : kSmallestCrossing;
+  ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+  key.add(tolerance_).add(reach_).add(smallestAngle);
+  curve.intersection = memory_.recall<std::optional<IntersectionCurve>>("intersect", std::move(key), [&] {
+    return intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, smallestAngle,
+                             progress_);
+  });
+  if (curve.intersection) curve.intersection->setSheets(*curve.sides[0].sheet, *curve.sides[1].sheet);
+}
+
 /// Moves the places where borders end on model curves: to where the foot of the curve's point on the fitted
 /// surface passes over the border's line.
 void ModelTrimmer::settleSplits(std::vector<CurveSplit>& splits) {
@@ -113,8 +180,20 @@ std::vector<char> ModelTrimmer::mayMove() const {
 /// Whether a sheet may become this surface; if so, how far its region is from it is kept.
 bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface) {
   const int r = sheetRegion_[sheet];
+  // The true surface is kept, so that its address means no other.
+  using Measured = std::pair<ChartDeviation, std::shared_ptr<const TrueSurface>>;
+  const Region& region = model_.regions[r];
+  ByteKey key;
+  key.add(numberOfRegion(r)).add(memory_.numberOf(surface));
   const auto deviation =
-      deviationFrom(surface, model_.regions[r], *maps_[r], *fitted_[r], threads_, progress_);
+      memory_
+          .recall<Measured>("deviation", std::move(key),
+                            [&] {
+                              return Measured(
+                                  deviationFrom(surface, region, *maps_[r], *fitted_[r], threads_, progress_),
+                                  region.surface);
+                            })
+          .first;
   if (!(deviation.max <= std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation))) return false;
   moved_[r] = deviation;
   return true;
@@ -142,7 +221,8 @@ void ModelTrimmer::meetInCorners() {
   for (auto& [id, corner] : corners) all.push_back(std::move(corner));
   trimquad::meetInCorners(
       sheets_, all, mayMove(), kSmallestTolerance,
-      [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
+      {memory_, [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); },
+       progress_});
 }
 
 /// The corners in which curves end along which sheets touch, with all sheets around them.
@@ -200,7 +280,9 @@ bool ModelTrimmer::joinTangent(const std::vector<int>& touching, double gap, std
   }
   const auto joined = joinTangentSheets(
       sheets_, tangent, tangentCorners(), mayMove(), {kStripWidth * tolerance_, gap},
-      [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); }, progress_);
+      {memory_, [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); },
+       progress_});
+  numberSheets();
   for (std::size_t k = 0; k < touching.size(); ++k) curves_.at(touching[k]).folded = joined.folded[k];
   resampled.insert(joined.moved.begin(), joined.moved.end());
   bool found = true;
@@ -232,11 +314,9 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
   std::vector<CurveEdge> result;
   if (curve.sides.size() != 2) {
     for (std::size_t k = 0; k < curve.sides.size(); ++k) {
-      const double most = tolerances[curve.sides[k].run->region], onSheet = kCloseness * most;
-      const CurveCloseness closeness{onSheet,
-                                     curvePieces_->isPolyline(id) ? kChainCloseness * most : onSheet};
+      const SheetSide& side = curve.sides[k];
       result.push_back(
-          {freeEdge(curve.sampled[k], curve.sides[k], closeness, progress_), {&curve.sides[k]}, false});
+          {freeEdgeOf(id, curve.sampled[k], side, tolerances[side.run->region]), {&side}, false});
     }
     return result;
   }
@@ -244,9 +324,13 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
   std::optional<std::vector<TrimPiece>> edge;
   if (curve.intersection) {
     const auto& piece = (*curvePieces_)[id];
-    edge = sharedEdge(*curve.intersection, piece.start == piece.end,
-                      vertices_[groupOf(*a.run, a.run->start)].point,
-                      vertices_[groupOf(*a.run, a.run->end)].point, progress_);
+    const auto& start = vertices_[groupOf(*a.run, a.run->start)].point;
+    const auto& end = vertices_[groupOf(*a.run, a.run->end)].point;
+    ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+    key.add(tolerance_).add(reach_).add(curve.folded).add(start).add(end);
+    edge = memory_.recall<std::optional<std::vector<TrimPiece>>>("shared edge", std::move(key), [&] {
+      return sharedEdge(*curve.intersection, piece.start == piece.end, start, end, progress_);
+    });
   }
   const bool loose = !edge;
   if (loose) {
@@ -254,10 +338,25 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
     // Sheets that agree do so on the curve itself.
     if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal)
       near = std::min(near, kTangentGap * model_.diagonal);
-    edge = looseEdge(curve.sampled.front(), curve.sides, near, progress_);
+    ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+    key.add(near);
+    edge = memory_.recall<std::vector<TrimPiece>>("loose edge", std::move(key), [&] {
+      return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
+    });
   }
   result.push_back({std::move(*edge), {&a, &b}, loose});
   return result;
+}
+
+std::vector<TrimPiece> ModelTrimmer::freeEdgeOf(int id, const SampledCurve& sampled, const SheetSide& side,
+                                                double tolerance) const {
+  const double onSheet = kCloseness * tolerance;
+  const CurveCloseness closeness{onSheet,
+                                 curvePieces_->isPolyline(id) ? kChainCloseness * tolerance : onSheet};
+  ByteKey key = keyOf(sampled, {side});
+  key.add(closeness.onSheet).add(closeness.inSpace);
+  return memory_.recall<std::vector<TrimPiece>>(
+      "free edge", std::move(key), [&] { return freeEdge(sampled, side, closeness, progress_); });
 }
 
 SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
@@ -392,9 +491,10 @@ void ModelTrimmer::appendShells(SplineModel& result) const {
 
 SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& maps,
                       const std::vector<const FittedSurface*>& fitted, double tolerance,
-                      const Progress& progress, int threads) {
+                      const Progress& progress, int threads, TrimMemory* memory) {
   TRIMQUAD_ASSERT(maps.size() == model.regions.size() && fitted.size() == model.regions.size());
-  const ModelTrimmer trimmer(model, maps, fitted, tolerance, threads, progress);
+  TrimMemory ownMemory;
+  const ModelTrimmer trimmer(model, maps, fitted, tolerance, memory ? *memory : ownMemory, threads, progress);
   std::vector<double> tolerances(model.regions.size(), tolerance);
   constexpr int maxAttempts = 3;
   for (int attempt = 1;; ++attempt) {
