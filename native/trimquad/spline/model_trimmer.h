@@ -71,6 +71,8 @@ class ModelTrimmer {
 
   /// \param tolerances by region: how far free edges may be from their curves, model units
   SplineModel trim(const std::vector<double>& tolerances) const;
+  /// How far the regions whose surfaces were moved are from them now.
+  std::map<int, ChartDeviation> movedRegions() const;
 
  private:
   void makeSheets();
@@ -93,11 +95,12 @@ class ModelTrimmer {
   ByteKey keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const;
   long numberOfRegion(int r) const;
   std::vector<SheetCorner> tangentCorners() const;
+  ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
   bool acceptsMoved(int sheet, const SplineSurface& surface);
   std::vector<char> mayMove() const;
   void meetInCorners();
   void joinTangent();
-  bool joinTangent(const std::vector<int>& touching, double gap, std::set<int>& resampled);
+  std::vector<int> joinTangent(const std::map<int, double>& gaps);
 
   void placeSeams() {
     for (int k = 0; k < int(sheets_.size()); ++k) {
@@ -160,7 +163,7 @@ class ModelTrimmer {
   std::vector<CornerPoint> vertices_;                        ///< by group
   std::map<std::pair<int, int>, int> vertexOfPoint_;         ///< by region and point of its layout: group
   std::vector<std::vector<BorderLines::Edge>> borderEdges_;  ///< by region
-  std::map<int, ChartDeviation> moved_;                      ///< by region whose surface was moved
+  std::set<int> moved_;                                      ///< regions whose surfaces were moved
 };
 
 }  // namespace trimquad

@@ -7,10 +7,6 @@
 #include <optional>
 #include <set>
 
-#include "trimquad/base/parallel.h"
-#include "trimquad/spline/deviation.h"
-#include "trimquad/spline/surface_samples.h"
-
 namespace trimquad {
 namespace {
 
@@ -234,11 +230,11 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
           const StripMoves strip(*curves[c].sampled, side, sheets[k]);
           if (onCurve[c] && !stuck[still] && !stuck[k]) {
             appendMovesToCurve(strip, own.onLeft, ridge[c], angles(curves[c], sheets),
-                               turned[still] ? 1 : 0.5, turning, limits.gap, moves);
+                               turned[still] ? 1 : 0.5, turning, curves[c].gap, moves);
             toCurve = true;
           } else if (onCurve[c] ? stuck[still] && (!stuck[k] || still < k) : rank(still) < rank(k)) {
-            appendMovesOnto(strip, sheets[still], curves[c].sampled->foot[1 - side], limits.width, limits.gap,
-                            moves);
+            appendMovesOnto(strip, sheets[still], curves[c].sampled->foot[1 - side], limits.width,
+                            curves[c].gap, moves);
             toStuck |= onCurve[c];
           }
         }
@@ -262,30 +258,6 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
       if (mayMove[k]) move(k, onlyToStuck);
   JoinedSheets result{{moved.begin(), moved.end()}, {}};
   for (std::size_t c = 0; c < curves.size(); ++c) result.folded.push_back(folds(c));
-  return result;
-}
-
-ChartDeviation deviationFrom(const SplineSurface& surface, const Region& region, const GridMap& map,
-                             const FittedSurface& fitted, int threads, const Progress& progress) {
-  ChartDeviation result;
-  if (map.mesh.n_faces() == 0) return result;
-  SplineSpace space{{surface.degreeU, surface.closedU, {}}, {surface.degreeV, false, {}}};
-  space.u.breaks.assign(surface.knotsU.begin() + surface.degreeU, surface.knotsU.end() - surface.degreeU);
-  space.v.breaks.assign(surface.knotsV.begin() + surface.degreeV, surface.knotsV.end() - surface.degreeV);
-  SurfaceSamples source(region, map, fitted.chart, surface.firstU(), progress);
-  auto samples = source.make(space, true, threads, progress);
-  parallelParts(int(samples.size()), threads, [&](int begin, int end) {
-    progress.check();
-    for (int i = begin; i < end; ++i) {
-      auto& s = samples[i];
-      const Eigen::Vector2d foot = surface.footPoint(s.point, s.parameter, kFootStep);
-      s.distance = (surface.point(foot[0], foot[1]) - s.point).norm();
-    }
-  });
-  const Deviation deviation = deviationOf(samples, std::vector<char>(samples.size(), 0));
-  result.max = deviation.max;
-  result.rms = deviation.rms;
-  if (deviation.worst >= 0) result.where = samples[deviation.worst].point;
   return result;
 }
 

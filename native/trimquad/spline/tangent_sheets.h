@@ -20,6 +20,7 @@ struct TangentCurve {
   const SampledCurve* sampled;
   std::array<Side, 2> sides;
   bool smooth;  ///< whether the curve is the model's own, no chain of mesh edges
+  double gap;   ///< what may be left between the sheets, model units
 };
 
 /// Largest gap that two sheets have after one has moved onto the other, by the model's diagonal.
@@ -33,7 +34,7 @@ struct JoinedSheets {
 /// How sheets are to be joined, model units.
 struct JoinLimits {
   double width;  ///< half of that of the strip in which one comes to be nearly tangent to the other
-  double gap;    ///< what may be left between them
+  double gap;    ///< what may be left between them in corners
 };
 
 /// Moves sheets so that they agree with the others on the curves along which these touch them, and nearly in
@@ -47,9 +48,5 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
 
 /// Sine of the angle between folded sheets from which on their intersection is looked for.
 inline constexpr double kSmallestFold = 5e-4;
-
-/// How far a region of one chart lies from a surface other than the fitted one.
-ChartDeviation deviationFrom(const SplineSurface& surface, const Region& region, const GridMap& map,
-                             const FittedSurface& fitted, int threads, const Progress& progress);
 
 }  // namespace trimquad

@@ -7,6 +7,7 @@
 
 #include "trimquad/base/error.h"
 #include "trimquad/spline/model_trimmer.h"
+#include "trimquad/spline/moved_deviation.h"
 #include "trimquad/spline/tangent_sheets.h"
 
 namespace trimquad {
@@ -177,26 +178,48 @@ std::vector<char> ModelTrimmer::mayMove() const {
   return single;
 }
 
-/// Whether a sheet may become this surface; if so, how far its region is from it is kept.
+/// Of a region of one chart from a surface that may be its own; at samples that follow from the region and
+/// its fit, or as many as that surface's knots ask for.
+ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bool closely) const {
+  const Region& region = model_.regions[r];
+  // The true surface is kept, so that its address means no other.
+  using Known = std::shared_ptr<const TrueSurface>;
+  const SplineSurface& dense = closely ? surface : fitted_[r]->surface;
+  ByteKey key;
+  key.add(numberOfRegion(r)).add(memory_.numberOf(dense));
+  const auto samples = [&] {
+    using Samples = std::pair<std::shared_ptr<const std::vector<SurfaceSample>>, Known>;
+    const auto make = [&] {
+      return std::make_shared<const std::vector<SurfaceSample>>(
+          samplesFor(dense, region, *maps_[r], fitted_[r]->chart, threads_, progress_));
+    };
+    if (closely) return make();
+    return memory_.recall<Samples>("samples", key, [&] { return Samples(make(), region.surface); }).first;
+  };
+  ByteKey ofSurface = key;
+  ofSurface.add(memory_.numberOf(surface));
+  using Measured = std::pair<ChartDeviation, Known>;
+  return memory_
+      .recall<Measured>(
+          "deviation", std::move(ofSurface),
+          [&] { return Measured(deviationFrom(surface, *samples(), threads_, progress_), region.surface); })
+      .first;
+}
+
+/// Whether a sheet may become this surface.
 bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface) {
   const int r = sheetRegion_[sheet];
-  // The true surface is kept, so that its address means no other.
-  using Measured = std::pair<ChartDeviation, std::shared_ptr<const TrueSurface>>;
-  const Region& region = model_.regions[r];
-  ByteKey key;
-  key.add(numberOfRegion(r)).add(memory_.numberOf(surface));
-  const auto deviation =
-      memory_
-          .recall<Measured>("deviation", std::move(key),
-                            [&] {
-                              return Measured(
-                                  deviationFrom(surface, region, *maps_[r], *fitted_[r], threads_, progress_),
-                                  region.surface);
-                            })
-          .first;
-  if (!(deviation.max <= std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation))) return false;
-  moved_[r] = deviation;
+  if (!(deviationOf(r, surface, false).max <=
+        std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)))
+    return false;
+  moved_.insert(r);
   return true;
+}
+
+std::map<int, ChartDeviation> ModelTrimmer::movedRegions() const {
+  std::map<int, ChartDeviation> result;
+  for (const int r : moved_) result[r] = deviationOf(r, sheets_[firstSheet_[r]].surface, true);
+  return result;
 }
 
 /// Moves single surfaces so that all around a corner of the model meet there.
@@ -251,51 +274,55 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
 /// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
 /// Where the surfaces bend sharply, a fold says where their intersection is only if they agree more closely.
 void ModelTrimmer::joinTangent() {
-  std::vector<int> touching;
+  std::map<int, double> gaps;
   for (const auto& [id, curve] : curves_)
-    if (curve.sides.size() == 2 && !curve.intersection) touching.push_back(id);
+    if (curve.sides.size() == 2 && !curve.intersection) gaps[id] = kTangentGap * model_.diagonal;
+  const auto curves = curves_;
   const auto fitted = sheets_;
   const auto moved = moved_;
-  std::set<int> resampled;
-  for (const double part : {1.0, kFinerGap}) {
-    sheets_ = fitted;
-    moved_ = moved;
-    if (joinTangent(touching, part * kTangentGap * model_.diagonal, resampled)) return;
-  }
+  const auto lost = joinTangent(gaps);
+  if (lost.empty()) return;
+  for (const int id : lost) gaps[id] *= kFinerGap;
+  curves_ = curves;
+  sheets_ = fitted;
+  moved_ = moved;
+  joinTangent(gaps);
 }
 
-/// Whether the curves of all folds are found.
-/// \param resampled sheets whose curves are not sampled as they were fitted; those that move now are added
-bool ModelTrimmer::joinTangent(const std::vector<int>& touching, double gap, std::set<int>& resampled) {
+/// \param gaps by curve along which sheets touch: what may be left between them there, model units
+/// Returns the curves of folds that are not found.
+std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
   std::vector<TangentCurve> tangent;
   const auto sideOf = [&](const SheetSide& side) {
     return TangentCurve::Side{sheetOf(*side.run), side.run->forward};
   };
-  for (const int id : touching) {
-    auto& curve = curves_.at(id);
-    curve.intersection.reset();
-    curve.folded = false;
-    tangent.push_back(
-        {&curve.sampled[0], {sideOf(curve.sides[0]), sideOf(curve.sides[1])}, !curvePieces_->isPolyline(id)});
+  for (const auto& [id, gap] : gaps) {
+    const auto& curve = curves_.at(id);
+    tangent.push_back({&curve.sampled[0],
+                       {sideOf(curve.sides[0]), sideOf(curve.sides[1])},
+                       !curvePieces_->isPolyline(id),
+                       gap});
   }
   const auto joined = joinTangentSheets(
-      sheets_, tangent, tangentCorners(), mayMove(), {kStripWidth * tolerance_, gap},
+      sheets_, tangent, tangentCorners(), mayMove(),
+      {kStripWidth * tolerance_, kTangentGap * model_.diagonal},
       {memory_, [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); },
        progress_});
   numberSheets();
-  for (std::size_t k = 0; k < touching.size(); ++k) curves_.at(touching[k]).folded = joined.folded[k];
-  resampled.insert(joined.moved.begin(), joined.moved.end());
-  bool found = true;
-  for (auto& [id, curve] : curves_) {
-    const bool touched = std::any_of(curve.sides.begin(), curve.sides.end(), [&](const SheetSide& side) {
-      return resampled.count(sheetOf(*side.run)) > 0;
-    });
-    if (!touched) continue;
+  auto folded = joined.folded.begin();
+  for (const auto& [id, gap] : gaps) curves_.at(id).folded = *folded++;
+  const auto hasMoved = [&](const SheetSide& side) {
+    return std::binary_search(joined.moved.begin(), joined.moved.end(), sheetOf(*side.run));
+  };
+  forEachCurve([&](int id, CurveWithSides& curve) {
+    if (std::none_of(curve.sides.begin(), curve.sides.end(), hasMoved)) return;
     sample(id, curve);
     if (curve.intersection || curve.folded) intersect(curve);
-    found &= !curve.folded || curve.intersection;
-  }
-  return found;
+  });
+  std::vector<int> lost;
+  for (const auto& [id, curve] : curves_)
+    if (curve.folded && !curve.intersection) lost.push_back(id);
+  return lost;
 }
 
 PieceLoop ModelTrimmer::borderPiece(int region, const Layout::Stretch& stretch,
@@ -458,7 +485,6 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
         }
       }
   appendShells(result);
-  result.moved = moved_;
   return result;
 }
 
@@ -507,7 +533,10 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
             model.regions[face.region].name, face.surface.point((*crossing)[0], (*crossing)[1])));
         tolerances[face.region] /= 8;
       }
-    if (crossings.empty()) return result;
+    if (crossings.empty()) {
+      result.moved = trimmer.movedRegions();
+      return result;
+    }
     if (attempt == maxAttempts) crossings.raise();
   }
 }
