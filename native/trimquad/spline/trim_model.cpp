@@ -526,13 +526,15 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
   for (int attempt = 1;; ++attempt) {
     SplineModel result = trimmer.trim(tolerances);
     RegionErrorList crossings;
+    std::set<int> crossed;
     for (const auto& face : result.faces)
       if (const auto crossing = loopCrossing(face)) {
         crossings.add(stageError(
             "fit", "trimming curves cross each other on the fitted surface; use a smaller tolerance",
             model.regions[face.region].name, face.surface.point((*crossing)[0], (*crossing)[1])));
-        tolerances[face.region] /= 8;
+        crossed.insert(face.region);
       }
+    for (const int r : crossed) tolerances[r] /= 8;
     if (crossings.empty()) {
       result.moved = trimmer.movedRegions();
       return result;
