@@ -99,8 +99,15 @@ void bindSpline(py::module_& m) {
       m, "TrimMemory",
       "What the steps of trims gave, so that a trim repeats only what changed since the last.")
       .def(py::init<>());
-  m.def("trim_model", &trimModel, py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"),
-        py::arg("progress"), py::arg("threads"), py::arg("memory") = nullptr, Released());
+  m.def(
+      "trim_model",
+      [](const Model& model, const std::vector<const GridMap*>& grids,
+         const std::vector<const FittedSurface*>& fitted, double tolerance, double enough,
+         const Progress& progress, int threads, TrimMemory* memory) {
+        return trimModel(model, grids, fitted, {tolerance, enough, threads, memory}, progress);
+      },
+      py::arg("model"), py::arg("grids"), py::arg("fitted"), py::arg("tolerance"), py::arg("enough"),
+      py::arg("progress"), py::arg("threads"), py::arg("memory") = nullptr, Released());
   m.def("fitted_as_moved", &fittedAsMoved, py::arg("fitted"), py::arg("model"), py::arg("region"),
         "the fit of one of the moved regions, with the surface and the deviations that it has in the model");
 }

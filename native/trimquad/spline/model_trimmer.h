@@ -20,6 +20,7 @@
 #include "trimquad/spline/trim_curve.h"
 #include "trimquad/spline/trim_loops.h"
 #include "trimquad/spline/trim_memory.h"
+#include "trimquad/spline/trim_model.h"
 
 namespace trimquad {
 
@@ -46,15 +47,16 @@ struct CurveWithSides {
 class ModelTrimmer {
  public:
   ModelTrimmer(const Model& model, const std::vector<const GridMap*>& maps,
-               const std::vector<const FittedSurface*>& fitted, double tolerance, TrimMemory& memory,
-               int threads, const Progress& progress)
+               const std::vector<const FittedSurface*>& fitted, const TrimOptions& options,
+               TrimMemory& memory, const Progress& progress)
       : model_(model),
         maps_(maps),
         fitted_(fitted),
-        tolerance_(tolerance),
-        reach_(10 * tolerance + 1e-9 * model.diagonal),
+        tolerance_(options.tolerance),
+        enough_(std::max(options.enough, options.tolerance)),
+        reach_(10 * tolerance_ + 1e-9 * model.diagonal),
         memory_(memory),
-        threads_(threads),
+        threads_(options.threads),
         progress_(progress) {
     memory_.startTrim();
     makeSheets();
@@ -96,7 +98,7 @@ class ModelTrimmer {
   long numberOfRegion(int r) const;
   std::vector<SheetCorner> tangentCorners() const;
   ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
-  bool acceptsMoved(int sheet, const SplineSurface& surface);
+  bool acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort);
   std::vector<char> mayMove() const;
   void meetInCorners();
   void joinTangent();
@@ -147,7 +149,7 @@ class ModelTrimmer {
   const Model& model_;
   const std::vector<const GridMap*>& maps_;
   const std::vector<const FittedSurface*>& fitted_;
-  double tolerance_, reach_;
+  double tolerance_, enough_, reach_;
   TrimMemory& memory_;
   int threads_;
   const Progress& progress_;

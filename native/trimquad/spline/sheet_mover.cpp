@@ -2,7 +2,7 @@
 
 namespace trimquad {
 bool SheetMover::move(std::vector<Sheet>& sheets, int k, const std::vector<SurfaceMove>& moves, double fade,
-                      int maxPoles) const {
+                      int maxPoles, bool lastResort) const {
   progress_.check();
   const SplineSurface& before = sheets[k].surface;
   ByteKey key;
@@ -11,7 +11,7 @@ bool SheetMover::move(std::vector<Sheet>& sheets, int k, const std::vector<Surfa
     key.add(move.at).add(move.by).add(move.along).add(move.weight).add(move.error);
   auto surface = memory_.recall<std::optional<SplineSurface>>(
       "move", std::move(key), [&] { return movedSurface(before, moves, fade, maxPoles, progress_); });
-  if (!surface || !accepts_(k, *surface)) return false;
+  if (!surface || !accepts_(k, *surface, lastResort)) return false;
   sheets[k].surface = std::move(*surface);
   return true;
 }

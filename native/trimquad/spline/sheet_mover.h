@@ -11,19 +11,19 @@ namespace trimquad {
 /// Moves sheets as far as their regions allow.
 class SheetMover {
  public:
-  /// \param accepts (sheet, new surface) whether it may become so
-  SheetMover(TrimMemory& memory, std::function<bool(int, const SplineSurface&)> accepts,
-             const Progress& progress)
+  /// (sheet, new surface, as a last resort) whether it may become so
+  using Accepts = std::function<bool(int, const SplineSurface&, bool)>;
+  SheetMover(TrimMemory& memory, Accepts accepts, const Progress& progress)
       : memory_(memory), accepts_(std::move(accepts)), progress_(progress) {}
 
   const Progress& progress() const { return progress_; }
   /// Whether sheet `k` has been moved, see movedSurface().
   bool move(std::vector<Sheet>& sheets, int k, const std::vector<SurfaceMove>& moves, double fade,
-            int maxPoles) const;
+            int maxPoles, bool lastResort = false) const;
 
  private:
   TrimMemory& memory_;
-  std::function<bool(int, const SplineSurface&)> accepts_;
+  Accepts accepts_;
   const Progress& progress_;
 };
 

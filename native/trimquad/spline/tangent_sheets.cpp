@@ -218,7 +218,13 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
   std::set<int> moved;
   /// \param onlyToStuck whether it has only to follow sheets that are stuck
   const auto move = [&](int k, bool onlyToStuck) {
-    for (const Turning turning : {Turning::ToFold, Turning::AwayFrom, Turning::None}) {
+    using enum Turning;
+    for (const auto& [turning, lastResort] : {std::pair(ToFold, false),
+                                              {AwayFrom, false},
+                                              {None, false},
+                                              {ToFold, true},
+                                              {AwayFrom, true},
+                                              {None, true}}) {
       std::vector<SurfaceMove> moves;
       bool touches = false, toCurve = false, toStuck = false;
       for (std::size_t c = 0; c < curves.size(); ++c)
@@ -238,16 +244,17 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
             toStuck |= onCurve[c];
           }
         }
-      if (!touches || (onlyToStuck && !toStuck) || (turning != Turning::ToFold && !toCurve)) return;
+      if (!touches || (onlyToStuck && !toStuck)) return;
+      if (turning != ToFold && !toCurve) continue;
       for (const auto& corner : corners) appendCornerMove(corner, k, sheets, rank, limits.gap, moves);
       if (moves.empty()) return;
       const int most = kMorePoles * int(sheets[k].surface.poles.size()) + kFewPoles;
-      if (mover.move(sheets, k, moves, toCurve ? kFadeFromCurve : kFade, most)) {
+      if (mover.move(sheets, k, moves, toCurve ? kFadeFromCurve : kFade, most, lastResort)) {
         moved.insert(k);
-        turned[k] = toCurve && turning != Turning::None;
+        turned[k] = toCurve && turning != None;
         return;
       }
-      if (turning == Turning::None && !onlyToStuck) stuck[k] = true;
+      if (turning == None && lastResort && !onlyToStuck) stuck[k] = true;
     }
   };
   const auto folds = [&](std::size_t c) {

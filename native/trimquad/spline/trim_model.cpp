@@ -23,7 +23,8 @@ constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
 constexpr double kTouchCloseness = 0.05, kStripWidth = 0.1;
 /// Part of the gap that sheets which bend sharply are joined to.
 constexpr double kFinerGap = 0.1;
-/// How far a region may be from a surface that was moved to agree with its neighbours: by the tolerance.
+/// How far a region may be from a surface that was moved to agree with its neighbours, by the tolerance, as
+/// long as there are other ways.
 constexpr double kMovedDeviation = 1.2;
 /// Edges between touching sheets that are further apart, by the model's diagonal, are loose.
 constexpr double kLooseGap = 5 * kTangentGap;
@@ -207,10 +208,10 @@ ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bo
 }
 
 /// Whether a sheet may become this surface.
-bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface) {
+bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) {
   const int r = sheetRegion_[sheet];
   if (!(deviationOf(r, surface, false).max <=
-        std::max(kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)))
+        std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)))
     return false;
   moved_.insert(r);
   return true;
@@ -242,10 +243,12 @@ void ModelTrimmer::meetInCorners() {
     }
   std::vector<SheetCorner> all;
   for (auto& [id, corner] : corners) all.push_back(std::move(corner));
-  trimquad::meetInCorners(
-      sheets_, all, mayMove(), kSmallestTolerance,
-      {memory_, [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); },
-       progress_});
+  trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance,
+                          {memory_,
+                           [&](int sheet, const SplineSurface& surface, bool lastResort) {
+                             return acceptsMoved(sheet, surface, lastResort);
+                           },
+                           progress_});
 }
 
 /// The corners in which curves end along which sheets touch, with all sheets around them.
@@ -303,11 +306,13 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
                        !curvePieces_->isPolyline(id),
                        gap});
   }
-  const auto joined = joinTangentSheets(
-      sheets_, tangent, tangentCorners(), mayMove(),
-      {kStripWidth * tolerance_, kTangentGap * model_.diagonal},
-      {memory_, [&](int sheet, const SplineSurface& surface) { return acceptsMoved(sheet, surface); },
-       progress_});
+  const auto joined = joinTangentSheets(sheets_, tangent, tangentCorners(), mayMove(),
+                                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal},
+                                        {memory_,
+                                         [&](int sheet, const SplineSurface& surface, bool lastResort) {
+                                           return acceptsMoved(sheet, surface, lastResort);
+                                         },
+                                         progress_});
   numberSheets();
   auto folded = joined.folded.begin();
   for (const auto& [id, gap] : gaps) curves_.at(id).folded = *folded++;
@@ -516,12 +521,13 @@ void ModelTrimmer::appendShells(SplineModel& result) const {
 }
 
 SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& maps,
-                      const std::vector<const FittedSurface*>& fitted, double tolerance,
-                      const Progress& progress, int threads, TrimMemory* memory) {
+                      const std::vector<const FittedSurface*>& fitted, const TrimOptions& options,
+                      const Progress& progress) {
   TRIMQUAD_ASSERT(maps.size() == model.regions.size() && fitted.size() == model.regions.size());
   TrimMemory ownMemory;
-  const ModelTrimmer trimmer(model, maps, fitted, tolerance, memory ? *memory : ownMemory, threads, progress);
-  std::vector<double> tolerances(model.regions.size(), tolerance);
+  const ModelTrimmer trimmer(model, maps, fitted, options, options.memory ? *options.memory : ownMemory,
+                             progress);
+  std::vector<double> tolerances(model.regions.size(), options.tolerance);
   constexpr int maxAttempts = 3;
   for (int attempt = 1;; ++attempt) {
     SplineModel result = trimmer.trim(tolerances);

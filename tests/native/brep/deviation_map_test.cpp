@@ -39,7 +39,7 @@ struct Sphere {
     model.regions[0].surface = std::make_shared<SphereSurface>(10);
     const GridMap own = sample::mapOn(model.regions[0], map);
     fitted = fitSurface(model.regions[0], own, {.tolerance = tolerance, .degree = 3}, Progress());
-    spline = trimModel(model, {&own}, {&fitted}, tolerance, Progress());
+    spline = trimModel(model, {&own}, {&fitted}, {tolerance}, Progress());
   }
 };
 

@@ -42,7 +42,7 @@ Built build(Model model, const std::vector<GridMap>& maps, double tolerance) {
     mapPointers.push_back(&maps[r]);
   }
   for (const auto& fit : built.fitted) fitPointers.push_back(&fit);
-  built.spline = trimModel(built.model, mapPointers, fitPointers, tolerance, Progress());
+  built.spline = trimModel(built.model, mapPointers, fitPointers, {tolerance}, Progress());
   return built;
 }
 

@@ -91,7 +91,7 @@ Trimmed trimmedStar(double tolerance = 3e-4 * kMetre, double teeth = 0) {
   result.fitted = fitSurface(model.regions[0], map,
                              {.tolerance = tolerance, .bisections = {{0}, {0}, {2}, {2}}}, Progress());
   result.figures = test::figures(result.fitted, model.regions[0], map);
-  result.model = trimModel(model, {&map}, {&result.fitted}, tolerance, Progress());
+  result.model = trimModel(model, {&map}, {&result.fitted}, {tolerance}, Progress());
   return result;
 }
 

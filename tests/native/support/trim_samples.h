@@ -188,7 +188,8 @@ class TrimCase {
     for (auto& map : maps) mapPointers.push_back(&map);
     for (auto& fit : fits) fitPointers.push_back(fit ? &*fit : nullptr);
     model.diagonal = 20;
-    return trimModel(model, mapPointers, fitPointers, tolerance, Progress(), threads);
+    return trimModel(model, mapPointers, fitPointers, {.tolerance = tolerance, .threads = threads},
+                     Progress());
   }
 
  private:
