@@ -320,10 +320,12 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
   IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), std::move(guesses),
                                  reach, smallestAngle);
   // The ends themselves may lie beyond the surfaces' common point; the corners settle those.
+  constexpr double end = 0.5 / 64;
   const int tests = smallestAngle < kSmallestCrossing ? 2048 : 64;
   for (int i = 0; i < tests; ++i) {
     progress.check();
-    if (!intersection.parameters(sampled.s.back() * (i + 0.5) / tests)) return {};
+    const double at = std::clamp((i + 0.5) / tests, end, 1 - end);
+    if (!intersection.parameters(sampled.s.back() * at)) return {};
   }
   return intersection;
 }
