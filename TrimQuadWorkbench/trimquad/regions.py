@@ -12,6 +12,9 @@ from .polygons import Polygons
 
 # A fit that cannot come that close is taken at this part of the tolerance.
 ENOUGH = 0.95
+# Poles that a fit to a part of the tolerance may take, by those that there are, and how many more in any case. The part 0.1
+# takes three times as many of smooth surfaces; more are no help where these are not.
+MORE_POLES, FEW_POLES = 5, 1000
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
@@ -371,7 +374,7 @@ def _polygonal(quads, item, options):
 
 def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0, only=True):
     """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
-    for `only`."""
+    for `only`. A part is given up where it takes many more poles than the surfaces have now."""
     options = result.options
     native = load()
     tolerance = part * result.fit_tolerance
@@ -387,6 +390,7 @@ def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0,
             degree=options.degree,
             slides=slides,
             threads=max(1, options.threads // len(result.regions)),
+            max_poles=None if part == 1 else MORE_POLES * item.fitted.control_points + FEW_POLES,
         ),
         progress,
     )

@@ -86,6 +86,7 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       tolerance_(options.tolerance),
       enough_(std::max(options.tolerance, options.enough)),
       threads_(options.threads),
+      maxPoles_(std::min(policy.maxPoles, options.maxPoles)),
       progress_(progress),
       smoothings_(options.smoothings),
       triangles_(triangleTree(region.mesh)),
@@ -465,8 +466,7 @@ void FitRounds::refine() {
   const bool manyFolds = double(deviation_.turnedOver.size()) > kSmallFolds * double(samples_.size());
   const bool vain = poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
                                             (manyFolds && poles() > kVainCleanPoles * closestClean_.poles));
-  if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() ||
-      poles() > policy_.maxPoles)
+  if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > maxPoles_)
     throw unreachable();
 }
 

@@ -69,7 +69,7 @@ class FitRounds {
 
   const Region& region_;
   const double tolerance_, enough_;
-  const int threads_;
+  const int threads_, maxPoles_;
   const Progress& progress_;
   const std::map<int, int> smoothings_;  ///< by chart
   FittedSurface result_;

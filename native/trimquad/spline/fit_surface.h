@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 
 #include "trimquad/base/progress.h"
@@ -27,6 +28,8 @@ struct FitOptions {
   /// it folds over nowhere.
   bool slides = true;
   int threads = 1;  ///< the result does not depend on it
+  /// Given up beyond about so many control points.
+  int maxPoles = std::numeric_limits<int>::max();
 };
 
 /// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else
