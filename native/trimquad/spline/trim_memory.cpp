@@ -10,8 +10,8 @@ ByteKey& addTo(ByteKey& key, const SplineSurface& surface) {
 
 void TrimMemory::startTrim() {
   const std::lock_guard lock(mutex_);
-  std::erase_if(known_, [&](const auto& item) { return item.second.trim < trim_; });
   ++trim_;
+  std::erase_if(known_, [&](const auto& item) { return item.second.trim < trim_ - kTrims; });
 }
 
 std::shared_ptr<const void> TrimMemory::find(const std::string& name) {

@@ -14,8 +14,9 @@ namespace trimquad {
 /// only what these change. May be used by several threads at once.
 class TrimMemory {
  public:
-  /// Forgets what the trim before the last one left and the last one did not use.
+  /// Forgets what none of the last trims used: one that fails early uses little.
   void startTrim();
+  static constexpr int kTrims = 3;
 
   /// What `compute()` gives, or gave before for the same step and key. Nothing is kept where it throws.
   template <class Value, class Compute>

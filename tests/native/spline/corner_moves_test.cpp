@@ -34,7 +34,10 @@ struct Around {
     }
   }
   std::vector<int> meet(const std::vector<char>& mayMove) {
-    return meetInCorners(sheets, {corner}, mayMove, 1e-9, [](int, const SplineSurface&) { return true; }, {});
+    TrimMemory memory;
+    const Progress progress;
+    const auto any = [](int, const SplineSurface&, bool) { return true; };
+    return meetInCorners(sheets, {corner}, mayMove, 1e-9, SheetMover(memory, any, progress));
   }
   SplineSurface::Jet jetAt(int k, const Eigen::Vector3d& p) const {
     return sheets[k].jet(sheets[k].footPoint(p, {0, 0}));
@@ -81,12 +84,14 @@ TEST(CornerMoves, LeaveThreeSheetsAloneThatHaveACommonPoint) {
 TEST(CornerMoves, LeaveSheetsAloneThatMayNotBecomeWhatTheyWould) {
   Around around({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}});
   int asked = 0;
-  const auto moved = meetInCorners(around.sheets, {around.corner}, {1, 1, 1, 1}, 1e-9,
-                                   [&](int, const SplineSurface&) {
-                                     ++asked;
-                                     return false;
-                                   },
-                                   {});
+  TrimMemory memory;
+  const Progress progress;
+  const auto none = [&](int, const SplineSurface&, bool) {
+    ++asked;
+    return false;
+  };
+  const auto moved =
+      meetInCorners(around.sheets, {around.corner}, {1, 1, 1, 1}, 1e-9, SheetMover(memory, none, progress));
   EXPECT_TRUE(moved.empty());
   EXPECT_EQ(asked, 8);  // with the tangent plane and without it
 }

@@ -210,5 +210,18 @@ TEST(FitSurface, cancels) {
   EXPECT_THROW(fitSurface(sheet.region, sheet.map, {.tolerance = 1e-4, .degree = 3}, progress), Error);
 }
 
+TEST(FitSurface, isGivenUpBeyondSoManyPoles) {
+  auto sheet = wavySheet();
+  sheet.build();
+  FitOptions options;
+  options.tolerance = 1e-4;
+  const auto fitted = fitSurface(sheet.region, sheet.map, options, Progress());
+  options.maxPoles = int(fitted.surface.poles.size()) / 4;
+  EXPECT_THROW(fitSurface(sheet.region, sheet.map, options, Progress()), Error);
+  options.enough = 0.1;  // taken with as many
+  EXPECT_LT(fitSurface(sheet.region, sheet.map, options, Progress()).surface.poles.size(),
+            fitted.surface.poles.size());
+}
+
 }  // namespace
 }  // namespace trimquad

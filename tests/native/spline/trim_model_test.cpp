@@ -238,16 +238,39 @@ TEST(TrimModel, allRegionsThatCannotBeTrimmedAreNamed) {
   }
 }
 
+void expectSame(const SplineModel& a, const SplineModel& b) {
+  ASSERT_EQ(a.edges.size(), b.edges.size());
+  for (std::size_t e = 0; e < a.edges.size(); ++e) {
+    EXPECT_EQ(a.edges[e].curve.knots, b.edges[e].curve.knots);
+    EXPECT_EQ(a.edges[e].curve.poles, b.edges[e].curve.poles);
+    EXPECT_EQ(a.edges[e].tolerance, b.edges[e].tolerance);
+  }
+  ASSERT_EQ(a.faces.size(), b.faces.size());
+  for (std::size_t f = 0; f < a.faces.size(); ++f)
+    EXPECT_EQ(a.faces[f].surface.poles, b.faces[f].surface.poles);
+  ASSERT_EQ(a.moved.size(), b.moved.size());
+  for (const auto& [region, deviation] : a.moved) EXPECT_EQ(deviation.max, b.moved.at(region).max);
+}
+
 TEST(TrimModel, theNumberOfThreadsChangesNothing) {
   auto sheets = tangentSheets(slowlyVarying);
-  const auto one = sheets.trim(1), three = sheets.trim(3);
-  ASSERT_EQ(one.edges.size(), three.edges.size());
-  for (std::size_t e = 0; e < one.edges.size(); ++e) {
-    EXPECT_EQ(one.edges[e].curve.knots, three.edges[e].curve.knots);
-    EXPECT_EQ(one.edges[e].curve.poles, three.edges[e].curve.poles);
-  }
-  for (std::size_t f = 0; f < one.faces.size(); ++f)
-    EXPECT_EQ(one.faces[f].surface.poles, three.faces[f].surface.poles);
+  expectSame(sheets.trim(1), sheets.trim(3));
+}
+
+TEST(TrimModel, memoryOfEarlierTrimsChangesNothing) {
+  auto sheets = tangentSheets(slowlyVarying);
+  TrimMemory memory;
+  const auto fresh = sheets.trim();
+  for (int again = 0; again < 3; ++again) expectSame(sheets.trim(1, &memory), fresh);
+  // One sheet is another one; the memory is of the one before, then of both.
+  auto& pole = sheets.fits[0]->surface.poles[sheets.fits[0]->surface.poles.size() / 2][2];
+  const double before = pole;
+  pole += 0.01;
+  const auto freshOther = sheets.trim();
+  expectSame(sheets.trim(1, &memory), freshOther);
+  EXPECT_NE(freshOther.edges[0].curve.poles, fresh.edges[0].curve.poles);
+  pole = before;
+  expectSame(sheets.trim(1, &memory), fresh);
 }
 
 TEST(TrimModel, jaggedBoundaryIsSmoothedWithinTheTolerance) {

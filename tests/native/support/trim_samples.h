@@ -182,14 +182,14 @@ class TrimCase {
     return int(model.regions.size()) - 1;
   }
 
-  SplineModel trim(int threads = 1) {
+  SplineModel trim(int threads = 1, TrimMemory* memory = nullptr) {
     std::vector<const GridMap*> mapPointers;
     std::vector<const FittedSurface*> fitPointers;
     for (auto& map : maps) mapPointers.push_back(&map);
     for (auto& fit : fits) fitPointers.push_back(fit ? &*fit : nullptr);
     model.diagonal = 20;
-    return trimModel(model, mapPointers, fitPointers, {.tolerance = tolerance, .threads = threads},
-                     Progress());
+    return trimModel(model, mapPointers, fitPointers,
+                     {.tolerance = tolerance, .threads = threads, .memory = memory}, Progress());
   }
 
  private:
