@@ -24,6 +24,11 @@
 
 namespace trimquad {
 
+/// Of vertices and edges that agree with their surfaces, model units.
+inline constexpr double kSmallestTolerance = 1e-7;
+/// Edges between touching sheets that are further apart, by the model's diagonal, are loose.
+inline constexpr double kLooseGap = 5 * kTangentGap;
+
 /// A boundary vertex of a chart that is a corner of the model, or a place where charts meet.
 struct CornerUse {
   int corner, sheet, vertex;

@@ -1,0 +1,117 @@
+// The curves along which a model's surfaces end: ModelTrimmer's part that finds them.
+
+#include <algorithm>
+
+#include "trimquad/spline/model_trimmer.h"
+
+namespace trimquad {
+namespace {
+
+/// Parts of the tolerance within which edges follow their curves, as seen on the sheet; and chains of mesh
+/// edges in space, so that their teeth are smoothed.
+constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
+/// The same for the edge of sheets that touch.
+constexpr double kTouchCloseness = 0.05;
+
+}  // namespace
+
+/// Of all that a step depends on that goes from samples to curves on the sheets.
+ByteKey ModelTrimmer::keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const {
+  ByteKey key;
+  key.add(sampled.curve->curve.get()).add(sampled.curve->start == sampled.curve->end);
+  key.add(sampled.t).add(sampled.s).add(sampled.point).add(sampled.foot);
+  for (const auto& side : sides) key.add(sheetNumbers_[sheetOf(*side.run)]).add(side.start).add(side.end);
+  return key;
+}
+
+void ModelTrimmer::sample(int id, CurveWithSides& curve) const {
+  // A sheet lies within the tolerance of its region; twenty times as much is another place of it.
+  const double reach = 20 * tolerance_ + 1e-9 * model_.diagonal;
+  const ModelCurve& piece = (*curvePieces_)[id];
+  progress_.check();
+  curve.sampled.clear();
+  const auto sampled = [&](const std::vector<SheetSide>& sides) {
+    ByteKey key;
+    key.add(piece.curve.get()).add(reach);
+    for (const auto& side : sides)
+      key.add(sheetNumbers_[sheetOf(*side.run)]).add(side.run->t).add(side.run->uv);
+    // The true curve is kept, so that its address means no other.
+    using Sampled = std::pair<SampledCurve, std::shared_ptr<const TrueCurve>>;
+    curve.sampled.push_back(
+        memory_
+            .recall<Sampled>("sample", std::move(key),
+                             [&] { return Sampled(sampleCurve(piece, sides, reach), piece.curve); })
+            .first);
+    curve.sampled.back().curve = &piece;
+  };
+  if (curve.sides.size() == 2)
+    sampled(curve.sides);
+  else
+    for (const auto& side : curve.sides) sampled({side});
+}
+
+void ModelTrimmer::intersect(CurveWithSides& curve) const {
+  if (curve.sides.size() != 2) return;
+  const double smallestAngle = curve.folded ? kSmallestFold : kSmallestCrossing;
+  ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+  key.add(tolerance_).add(reach_).add(smallestAngle);
+  curve.intersection = memory_.recall<std::optional<IntersectionCurve>>("intersect", std::move(key), [&] {
+    return intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, smallestAngle,
+                             progress_);
+  });
+  if (curve.intersection) curve.intersection->setSheets(*curve.sides[0].sheet, *curve.sides[1].sheet);
+}
+
+/// The edges along a curve: one that its two sheets share, or one a sheet.
+std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWithSides& curve,
+                                                           const std::vector<double>& tolerances) const {
+  progress_.check();
+  std::vector<CurveEdge> result;
+  if (curve.sides.size() != 2) {
+    for (std::size_t k = 0; k < curve.sides.size(); ++k) {
+      const SheetSide& side = curve.sides[k];
+      result.push_back(
+          {freeEdgeOf(id, curve.sampled[k], side, tolerances[side.run->region]), {&side}, false});
+    }
+    return result;
+  }
+  const SheetSide &a = curve.sides[0], &b = curve.sides[1];
+  std::optional<std::vector<TrimPiece>> edge;
+  if (curve.intersection) {
+    const auto& piece = (*curvePieces_)[id];
+    const auto& start = vertices_[groupOf(*a.run, a.run->start)].point;
+    const auto& end = vertices_[groupOf(*a.run, a.run->end)].point;
+    ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+    key.add(tolerance_).add(reach_).add(curve.folded).add(start).add(end);
+    edge = memory_.recall<std::optional<std::vector<TrimPiece>>>("shared edge", std::move(key), [&] {
+      return sharedEdge(*curve.intersection, piece.start == piece.end, start, end, progress_);
+    });
+  }
+  const bool loose = !edge;
+  if (loose) {
+    double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+    // Sheets that agree do so on the curve itself.
+    if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal)
+      near = std::min(near, kTangentGap * model_.diagonal);
+    ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+    key.add(near);
+    edge = memory_.recall<std::vector<TrimPiece>>("loose edge", std::move(key), [&] {
+      return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
+    });
+  }
+  result.push_back({std::move(*edge), {&a, &b}, loose});
+  return result;
+}
+
+std::vector<TrimPiece> ModelTrimmer::freeEdgeOf(int id, const SampledCurve& sampled, const SheetSide& side,
+                                                double tolerance) const {
+  const double onSheet = kCloseness * tolerance;
+  const CurveCloseness closeness{onSheet,
+                                 curvePieces_->isPolyline(id) ? kChainCloseness * tolerance : onSheet};
+  ByteKey key = keyOf(sampled, {side});
+  key.add(closeness.onSheet).add(closeness.inSpace);
+  return memory_.recall<std::vector<TrimPiece>>(
+      "free edge", std::move(key), [&] { return freeEdge(sampled, side, closeness, progress_); });
+}
+
+}  // namespace trimquad

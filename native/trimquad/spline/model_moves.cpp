@@ -1,0 +1,196 @@
+// Surfaces that are moved to agree with their neighbours: ModelTrimmer's part that does it.
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "trimquad/spline/model_trimmer.h"
+#include "trimquad/spline/moved_deviation.h"
+
+namespace trimquad {
+namespace {
+
+/// Half of the width of the strip in which sheets that touch come to be nearly tangent, by the tolerance.
+constexpr double kStripWidth = 0.1;
+/// Part of the gap that sheets which bend sharply are joined to.
+constexpr double kFinerGap = 0.1;
+/// How far a region may be from a surface that was moved to agree with its neighbours, by the tolerance, as
+/// long as there are other ways.
+constexpr double kMovedDeviation = 1.2;
+
+}  // namespace
+
+/// Of all that its deviation from a surface depends on.
+long ModelTrimmer::numberOfRegion(int r) const {
+  const Region& region = model_.regions[r];
+  const auto& mesh = maps_[r]->mesh;
+  ByteKey key;
+  key.add(region.surface.get());
+  for (const auto v : mesh.vertices()) key.add(mesh.point(v));
+  for (const auto h : mesh.halfedges())
+    key.add(mesh.to_vertex_handle(h).idx()).add(mesh.face_handle(h).idx());
+  const Chart& chart = fitted_[r]->chart;
+  key.add(chart.scale.bits).add(chart.period.value_or(0));
+  for (const auto& corner : chart.corner) key.add(corner.u).add(corner.v);
+  return memory_.numberOf("region", std::move(key));
+}
+
+/// By sheet: whether its surface may move. Those of one region are joined to each other.
+std::vector<char> ModelTrimmer::mayMove() const {
+  std::vector<char> single;
+  for (const int r : sheetRegion_) single.push_back(!borders_[r]);
+  return single;
+}
+
+/// Of a region of one chart from a surface that may be its own; at samples that follow from the region and
+/// its fit, or as many as that surface's knots ask for.
+ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bool closely) const {
+  const Region& region = model_.regions[r];
+  // The true surface is kept, so that its address means no other.
+  using Known = std::shared_ptr<const TrueSurface>;
+  const SplineSurface& dense = closely ? surface : fitted_[r]->surface;
+  ByteKey key;
+  key.add(numberOfRegion(r)).add(memory_.numberOf(dense));
+  const auto samples = [&] {
+    using Samples = std::pair<std::shared_ptr<const std::vector<SurfaceSample>>, Known>;
+    const auto make = [&] {
+      return std::make_shared<const std::vector<SurfaceSample>>(
+          samplesFor(dense, region, *maps_[r], fitted_[r]->chart, threads_, progress_));
+    };
+    if (closely) return make();
+    return memory_.recall<Samples>("samples", key, [&] { return Samples(make(), region.surface); }).first;
+  };
+  ByteKey ofSurface = key;
+  ofSurface.add(memory_.numberOf(surface));
+  using Measured = std::pair<ChartDeviation, Known>;
+  return memory_
+      .recall<Measured>(
+          "deviation", std::move(ofSurface),
+          [&] { return Measured(deviationFrom(surface, *samples(), threads_, progress_), region.surface); })
+      .first;
+}
+
+/// Whether a sheet may become this surface.
+bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) {
+  const int r = sheetRegion_[sheet];
+  if (!(deviationOf(r, surface, false).max <=
+        std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)))
+    return false;
+  moved_.insert(r);
+  return true;
+}
+
+std::map<int, ChartDeviation> ModelTrimmer::movedRegions() const {
+  std::map<int, ChartDeviation> result;
+  for (const int r : moved_) result[r] = deviationOf(r, sheets_[firstSheet_[r]].surface, true);
+  return result;
+}
+
+/// Moves single surfaces so that all around a corner of the model meet there.
+void ModelTrimmer::meetInCorners() {
+  std::map<int, SheetCorner> corners;
+  std::set<std::tuple<int, int, int>> known;  // corner, sheet, vertex
+  for (const auto& run : runs_)
+    for (const bool atStart : {true, false}) {
+      const RunEnd& end = atStart ? run.start : run.end;
+      const int sheet = sheetOf(run), id = cornerOf(end);
+      if (id >= int(model_.corners.size()) || !known.insert({id, sheet, end.vertex}).second) continue;
+      auto& corner = corners[id];
+      corner.point = model_.corners[id];
+      const Eigen::Vector2d at = atStart ? run.uv.front() : run.uv.back();
+      corner.uses.push_back({sheet, at, {}});
+      const auto& surface = model_.regions[run.region].surface;
+      if (!surface) continue;
+      const auto jet = sheets_[sheet].jet(at);
+      corner.uses.back().normal = surface->closestFacing(corner.point, jet.su.cross(jet.sv)).normal;
+    }
+  std::vector<SheetCorner> all;
+  for (auto& [id, corner] : corners) all.push_back(std::move(corner));
+  trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance,
+                          {memory_,
+                           [&](int sheet, const SplineSurface& surface, bool lastResort) {
+                             return acceptsMoved(sheet, surface, lastResort);
+                           },
+                           progress_});
+}
+
+/// The corners in which curves end along which sheets touch, with all sheets around them.
+std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
+  std::map<int, SheetCorner> corners;
+  for (const auto& [id, curve] : curves_)
+    if (curve.sides.size() == 2 && !curve.intersection)
+      for (const auto& end : {curve.sides[0].run->start, curve.sides[0].run->end}) corners[cornerOf(end)];
+  for (const auto& [id, curve] : curves_)
+    for (std::size_t k = 0; k < curve.sides.size(); ++k) {
+      const auto& sampled = curve.sampled[curve.sides.size() == 2 ? 0 : k];
+      const auto& feet = sampled.foot[curve.sides.size() == 2 ? k : 0];
+      const BoundaryRun& run = *curve.sides[k].run;
+      for (const bool atStart : {true, false}) {
+        const auto corner = corners.find(cornerOf(atStart ? run.start : run.end));
+        if (corner == corners.end()) continue;
+        corner->second.point = atStart ? sampled.point.front() : sampled.point.back();
+        corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back()});
+      }
+    }
+  std::vector<SheetCorner> result;
+  for (auto& [id, corner] : corners) result.push_back(std::move(corner));
+  return result;
+}
+
+/// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
+/// Where the surfaces bend sharply, a fold says where their intersection is only if they agree more closely.
+void ModelTrimmer::joinTangent() {
+  std::map<int, double> gaps;
+  for (const auto& [id, curve] : curves_)
+    if (curve.sides.size() == 2 && !curve.intersection) gaps[id] = kTangentGap * model_.diagonal;
+  const auto curves = curves_;
+  const auto fitted = sheets_;
+  const auto moved = moved_;
+  const auto lost = joinTangent(gaps);
+  if (lost.empty()) return;
+  for (const int id : lost) gaps[id] *= kFinerGap;
+  curves_ = curves;
+  sheets_ = fitted;
+  moved_ = moved;
+  joinTangent(gaps);
+}
+
+/// \param gaps by curve along which sheets touch: what may be left between them there, model units
+/// Returns the curves of folds that are not found.
+std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
+  std::vector<TangentCurve> tangent;
+  const auto sideOf = [&](const SheetSide& side) {
+    return TangentCurve::Side{sheetOf(*side.run), side.run->forward};
+  };
+  for (const auto& [id, gap] : gaps) {
+    const auto& curve = curves_.at(id);
+    tangent.push_back({&curve.sampled[0],
+                       {sideOf(curve.sides[0]), sideOf(curve.sides[1])},
+                       !curvePieces_->isPolyline(id),
+                       gap});
+  }
+  const auto joined = joinTangentSheets(sheets_, tangent, tangentCorners(), mayMove(),
+                                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal},
+                                        {memory_,
+                                         [&](int sheet, const SplineSurface& surface, bool lastResort) {
+                                           return acceptsMoved(sheet, surface, lastResort);
+                                         },
+                                         progress_});
+  numberSheets();
+  auto folded = joined.folded.begin();
+  for (const auto& [id, gap] : gaps) curves_.at(id).folded = *folded++;
+  const auto hasMoved = [&](const SheetSide& side) {
+    return std::binary_search(joined.moved.begin(), joined.moved.end(), sheetOf(*side.run));
+  };
+  forEachCurve([&](int id, CurveWithSides& curve) {
+    if (std::none_of(curve.sides.begin(), curve.sides.end(), hasMoved)) return;
+    sample(id, curve);
+    if (curve.intersection || curve.folded) intersect(curve);
+  });
+  std::vector<int> lost;
+  for (const auto& [id, curve] : curves_)
+    if (curve.folded && !curve.intersection) lost.push_back(id);
+  return lost;
+}
+
+}  // namespace trimquad
