@@ -15,12 +15,12 @@ constexpr double kTouchCloseness = 0.05;
 
 }  // namespace
 
-/// Of all that a step depends on that goes from samples to curves on the sheets.
+/// Of the samples and the sheets that a step goes from.
 ByteKey ModelTrimmer::keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const {
   ByteKey key;
   key.add(sampled.curve->curve.get()).add(sampled.curve->start == sampled.curve->end);
   key.add(sampled.t).add(sampled.s).add(sampled.point).add(sampled.foot);
-  for (const auto& side : sides) key.add(sheetNumbers_[sheetOf(*side.run)]).add(side.start).add(side.end);
+  for (const auto& side : sides) key.add(sheetNumbers_[sheetOf(*side.run)]);
   return key;
 }
 
@@ -94,6 +94,7 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
     if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal)
       near = std::min(near, kTangentGap * model_.diagonal);
     ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+    for (const auto& side : curve.sides) key.add(side.start).add(side.end);
     key.add(near);
     edge = memory_.recall<std::vector<TrimPiece>>("loose edge", std::move(key), [&] {
       return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
@@ -109,7 +110,7 @@ std::vector<TrimPiece> ModelTrimmer::freeEdgeOf(int id, const SampledCurve& samp
   const CurveCloseness closeness{onSheet,
                                  curvePieces_->isPolyline(id) ? kChainCloseness * tolerance : onSheet};
   ByteKey key = keyOf(sampled, {side});
-  key.add(closeness.onSheet).add(closeness.inSpace);
+  key.add(side.start).add(side.end).add(closeness.onSheet).add(closeness.inSpace);
   return memory_.recall<std::vector<TrimPiece>>(
       "free edge", std::move(key), [&] { return freeEdge(sampled, side, closeness, progress_); });
 }

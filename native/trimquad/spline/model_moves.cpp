@@ -80,6 +80,13 @@ bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface, bool la
   return true;
 }
 
+SheetMover ModelTrimmer::mover() {
+  const auto accepts = [&](int sheet, const SplineSurface& surface, bool lastResort) {
+    return acceptsMoved(sheet, surface, lastResort);
+  };
+  return SheetMover(memory_, accepts, progress_);
+}
+
 std::map<int, ChartDeviation> ModelTrimmer::movedRegions() const {
   std::map<int, ChartDeviation> result;
   for (const int r : moved_) result[r] = deviationOf(r, sheets_[firstSheet_[r]].surface, true);
@@ -106,12 +113,7 @@ void ModelTrimmer::meetInCorners() {
     }
   std::vector<SheetCorner> all;
   for (auto& [id, corner] : corners) all.push_back(std::move(corner));
-  trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance,
-                          {memory_,
-                           [&](int sheet, const SplineSurface& surface, bool lastResort) {
-                             return acceptsMoved(sheet, surface, lastResort);
-                           },
-                           progress_});
+  trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance, mover());
 }
 
 /// The corners in which curves end along which sheets touch, with all sheets around them.
@@ -170,12 +172,7 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
                        gap});
   }
   const auto joined = joinTangentSheets(sheets_, tangent, tangentCorners(), mayMove(),
-                                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal},
-                                        {memory_,
-                                         [&](int sheet, const SplineSurface& surface, bool lastResort) {
-                                           return acceptsMoved(sheet, surface, lastResort);
-                                         },
-                                         progress_});
+                                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal}, mover());
   numberSheets();
   auto folded = joined.folded.begin();
   for (const auto& [id, gap] : gaps) curves_.at(id).folded = *folded++;

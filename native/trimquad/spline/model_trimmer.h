@@ -105,6 +105,7 @@ class ModelTrimmer {
   ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
   bool acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort);
   std::vector<char> mayMove() const;
+  SheetMover mover();
   void meetInCorners();
   void joinTangent();
   std::vector<int> joinTangent(const std::map<int, double>& gaps);

@@ -219,14 +219,17 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
   /// \param onlyToStuck whether it has only to follow sheets that are stuck
   const auto move = [&](int k, bool onlyToStuck) {
     using enum Turning;
+    bool toCurve = false;  // the same for every turning
     for (const auto& [turning, lastResort] : {std::pair(ToFold, false),
                                               {AwayFrom, false},
                                               {None, false},
                                               {ToFold, true},
                                               {AwayFrom, true},
                                               {None, true}}) {
+      if (turning != ToFold && !toCurve) continue;
       std::vector<SurfaceMove> moves;
-      bool touches = false, toCurve = false, toStuck = false;
+      bool touches = false, toStuck = false;
+      toCurve = false;
       for (std::size_t c = 0; c < curves.size(); ++c)
         for (const int side : {0, 1}) {
           const auto& own = curves[c].sides[side];
@@ -245,7 +248,6 @@ JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<Tan
           }
         }
       if (!touches || (onlyToStuck && !toStuck)) return;
-      if (turning != ToFold && !toCurve) continue;
       for (const auto& corner : corners) appendCornerMove(corner, k, sheets, rank, limits.gap, moves);
       if (moves.empty()) return;
       const int most = kMorePoles * int(sheets[k].surface.poles.size()) + kFewPoles;

@@ -39,7 +39,11 @@ void ModelTrimmer::makeSheets() {
 
 void ModelTrimmer::numberSheets() {
   sheetNumbers_.clear();
-  for (const auto& sheet : sheets_) sheetNumbers_.push_back(memory_.numberOf(sheet.surface));
+  for (const auto& sheet : sheets_) {
+    ByteKey key;
+    addTo(key, sheet.surface).add(sheet.period.value_or(0)).add(sheet.slack);
+    sheetNumbers_.push_back(memory_.numberOf("sheet", std::move(key)));
+  }
 }
 
 /// Moves the places where borders end on model curves: to where the foot of the curve's point on the fitted
