@@ -54,9 +54,9 @@ def trim(result, progress):
                     memory,
                 )
                 result.native_shape = native.assemble(result.spline)
-            if not _refit_faulty(result, checks, progress):
+            if not _refit_faulty(result, checks, progress) and not _take_back(result):
                 break
-            result.spline = None  # its faces are at fault
+            result.spline = None  # its faces are at fault, or others may join them
         except Error as error:
             if error.kind == "cancelled":
                 raise
@@ -116,7 +116,27 @@ def _refit_all(at_fault, result, progress):
             item.error = error
         else:
             again.append((item, charts, error))
+    before = [item.fitted for item, *_ in again]
     _at_once(_refit, again, result, progress)
+    for (item, *_), fitted in zip(again, before):
+        if item.error is None:
+            continue
+        if _fit_around_closer(item, result, progress):
+            item.fitted, item.error = fitted, None
+        else:
+            item.left_out = fitted, _fits_around(item, result)
+
+
+def _take_back(result):
+    """Takes regions back that were left out, where those around are others by now. Whether there are any."""
+    back = [r for r in result.failed if r.left_out and _fits_around(r, result) != r.left_out[1]]
+    for item in back:
+        item.fitted, item.error, item.left_out = item.left_out[0], None, None
+    return bool(back)
+
+
+def _fits_around(item, result):
+    return [other.fitted for other in _touching(item, result)]
 
 
 def _at_once(function, arguments, result, progress):
@@ -170,9 +190,19 @@ def _applies(way, item, charts):
 
 def _fit_parts_closer(item, result, progress):
     """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
-    around = [result.regions[k] for k in load().touching_regions(result.model, result.regions.index(item))]
-    parts = [(part,) for part in around if part.cut_from is not None]
+    parts = [(part,) for part in _touching(item, result) if part.cut_from is not None]
     return any(_at_once(_fit_closer, parts, result, progress))
+
+
+def _fit_around_closer(item, result, progress):
+    """Fits all regions around a region more closely, once: what is narrow beside the tolerance vanishes between them
+    otherwise. Whether there are any that could be."""
+    around = [(other,) for other in _touching(item, result) if other is not item]
+    return any(_at_once(_fit_closer, around, result, progress))
+
+
+def _touching(item, result):
+    return [result.regions[k] for k in load().touching_regions(result.model, result.regions.index(item))]
 
 
 def _fit_closer(item, result, progress):

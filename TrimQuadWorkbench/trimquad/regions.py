@@ -78,6 +78,7 @@ class RegionResult:
         self.seconds = {}
         self.cut_from = None
         self.fitted_closer = False
+        self.left_out = None  # surfaces that could not be trimmed, and those around then
         self.cuts_left = len(CUTS)
         self.parts = None  # of the cut that comes next, where it is known
 

@@ -17,6 +17,7 @@ struct SheetCorner {
   };
   Eigen::Vector3d point;
   std::vector<Use> uses;
+  int id = 0;  ///< the corner's number
 };
 
 /// Moves sheets so that all sheets around a corner pass through one point, with the region's tangent plane

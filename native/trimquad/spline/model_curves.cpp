@@ -13,6 +13,11 @@ constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
 /// The same for the edge of sheets that touch.
 constexpr double kTouchCloseness = 0.05;
 
+void addTo(ByteKey& key, const std::vector<TangentStretch>& stretches) {
+  key.add(stretches.size());
+  for (const auto& stretch : stretches) key.add(stretch.first).add(stretch.last).add(stretch.blend);
+}
+
 }  // namespace
 
 /// Of the samples and the sheets that a step goes from.
@@ -55,9 +60,10 @@ void ModelTrimmer::intersect(CurveWithSides& curve) const {
   const double smallestAngle = curve.folded ? kSmallestFold : kSmallestCrossing;
   ByteKey key = keyOf(curve.sampled.front(), curve.sides);
   key.add(tolerance_).add(reach_).add(smallestAngle);
+  addTo(key, curve.tangent);
   curve.intersection = memory_.recall<std::optional<IntersectionCurve>>("intersect", std::move(key), [&] {
     return intersectionCurve(curve.sampled.front(), curve.sides, tolerance_, reach_, smallestAngle,
-                             progress_);
+                             curve.tangent, progress_);
   });
   if (curve.intersection) curve.intersection->setSheets(*curve.sides[0].sheet, *curve.sides[1].sheet);
 }
@@ -83,6 +89,7 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
     const auto& end = vertices_[groupOf(*a.run, a.run->end)].point;
     ByteKey key = keyOf(curve.sampled.front(), curve.sides);
     key.add(tolerance_).add(reach_).add(curve.folded).add(start).add(end);
+    addTo(key, curve.tangent);
     edge = memory_.recall<std::optional<std::vector<TrimPiece>>>("shared edge", std::move(key), [&] {
       return sharedEdge(*curve.intersection, piece.start == piece.end, start, end, progress_);
     });

@@ -17,6 +17,9 @@ constexpr double kFinerGap = 0.1;
 /// How far a region may be from a surface that was moved to agree with its neighbours, by the tolerance, as
 /// long as there are other ways.
 constexpr double kMovedDeviation = 1.2;
+/// By how much sheets may miss a curve where they make no edge: so little that OpenCASCADE's own tolerance
+/// covers it, model units.
+constexpr double kTangentError = 0.3 * kSmallestTolerance;
 
 }  // namespace
 
@@ -71,16 +74,15 @@ ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bo
 }
 
 /// Whether a sheet may become this surface.
-bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) {
+bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) const {
   const int r = sheetRegion_[sheet];
   if (!(deviationOf(r, surface, false).max <=
         std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)))
     return false;
-  moved_.insert(r);
   return true;
 }
 
-SheetMover ModelTrimmer::mover() {
+SheetMover ModelTrimmer::mover() const {
   const auto accepts = [&](int sheet, const SplineSurface& surface, bool lastResort) {
     return acceptsMoved(sheet, surface, lastResort);
   };
@@ -103,6 +105,7 @@ void ModelTrimmer::meetInCorners() {
       const int sheet = sheetOf(run), id = cornerOf(end);
       if (id >= int(model_.corners.size()) || !known.insert({id, sheet, end.vertex}).second) continue;
       auto& corner = corners[id];
+      corner.id = id;
       corner.point = model_.corners[id];
       const Eigen::Vector2d at = atStart ? run.uv.front() : run.uv.back();
       corner.uses.push_back({sheet, at, {}});
@@ -113,7 +116,8 @@ void ModelTrimmer::meetInCorners() {
     }
   std::vector<SheetCorner> all;
   for (auto& [id, corner] : corners) all.push_back(std::move(corner));
-  trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance, mover());
+  for (const int k : trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance, mover()))
+    moved_.insert(sheetRegion_[k]);
 }
 
 /// The corners in which curves end along which sheets touch, with all sheets around them.
@@ -135,7 +139,10 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
       }
     }
   std::vector<SheetCorner> result;
-  for (auto& [id, corner] : corners) result.push_back(std::move(corner));
+  for (auto& [id, corner] : corners) {
+    corner.id = id;
+    result.push_back(std::move(corner));
+  }
   return result;
 }
 
@@ -169,13 +176,19 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
     tangent.push_back({&curve.sampled[0],
                        {sideOf(curve.sides[0]), sideOf(curve.sides[1])},
                        !curvePieces_->isPolyline(id),
-                       gap});
+                       gap,
+                       {cornerOf(curve.sides[0].run->start), cornerOf(curve.sides[0].run->end)}});
   }
-  const auto joined = joinTangentSheets(sheets_, tangent, tangentCorners(), mayMove(),
-                                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal}, mover());
+  const auto joined = joinTangentSheets(
+      sheets_, tangent, tangentCorners(), mayMove(),
+      {kStripWidth * tolerance_, kTangentGap * model_.diagonal, kTangentError}, threads_, mover());
+  for (const int k : joined.moved) moved_.insert(sheetRegion_[k]);
   numberSheets();
-  auto folded = joined.folded.begin();
-  for (const auto& [id, gap] : gaps) curves_.at(id).folded = *folded++;
+  std::size_t number = 0;
+  for (const auto& [id, gap] : gaps) {
+    curves_.at(id).folded = joined.folded[number];
+    curves_.at(id).tangent = joined.tangent[number++];
+  }
   const auto hasMoved = [&](const SheetSide& side) {
     return std::binary_search(joined.moved.begin(), joined.moved.end(), sheetOf(*side.run));
   };

@@ -45,6 +45,7 @@ struct CurveWithSides {
   std::vector<SampledCurve> sampled;  ///< one for all sides where they share the edge, else one a side
   std::optional<IntersectionCurve> intersection;
   bool folded = false;  ///< whether its sheets were tangent, and have been given a slight edge there
+  std::vector<TangentStretch> tangent;  ///< where they have none
 };
 
 /// Trims fitted surfaces and joins them. Everything that does not depend on how closely free edges follow
@@ -103,9 +104,9 @@ class ModelTrimmer {
   long numberOfRegion(int r) const;
   std::vector<SheetCorner> tangentCorners() const;
   ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
-  bool acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort);
+  bool acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) const;
   std::vector<char> mayMove() const;
-  SheetMover mover();
+  SheetMover mover() const;
   void meetInCorners();
   void joinTangent();
   std::vector<int> joinTangent(const std::map<int, double>& gaps);

@@ -3,9 +3,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
-#include <set>
+
+#include "trimquad/base/parallel.h"
+#include "trimquad/spline/fold_plan.h"
 
 namespace trimquad {
 namespace {
@@ -20,9 +23,13 @@ constexpr double kCornerWeight = 0.01;  ///< length of curve that a corner stand
 constexpr double kSharp = 0.1;
 /// Half of the width of the strip in which a sheet that moves onto its curve gets its slope, quads.
 constexpr double kStrip = 1.0 / 32;
-/// Sine of the angle of a fold, and what of it may be missed; of the angles up to which sheets are turned to
-/// make it, and from which on they are not turned.
-constexpr double kFold = 0.01, kFoldMissed = 0.001, kFlattened = 0.02, kKept = 0.15;
+/// Weight of places on a curve against slopes there.
+constexpr double kPlaceWeight = 1000;
+/// What of a fold's angle may be missed; up to which angle sheets are turned back to make it.
+constexpr double kFoldMissed = 0.001, kFlattened = 0.02;
+/// How much longer than nothing the sum of two curves' unit directions out of a corner is from which on both
+/// fix a sheet's tangent plane there.
+constexpr double kBends = 0.05;
 /// Quads over which sheets go back to where they were.
 constexpr double kFade = 1, kFadeFromCurve = 0.125;
 /// How far the strip goes on beyond the curve's ends, where the model's corners may lie off them: by its
@@ -125,37 +132,6 @@ void appendMovesOnto(const StripMoves& strip, const Sheet& still, const std::vec
     }
 }
 
-/// The sines of the angles between a curve's sheets, by sample: above 0 where they make a ridge, seen from
-/// outside, below where they make a valley; infinite from a right angle on.
-std::vector<double> angles(const TangentCurve& curve, const std::vector<Sheet>& sheets) {
-  std::vector<double> found;
-  const StripMoves strips[] = {{*curve.sampled, 0, sheets[curve.sides[0].sheet]},
-                               {*curve.sampled, 1, sheets[curve.sides[1].sheet]}};
-  for (std::size_t i = 0; i < strips[0].samples(); ++i) {
-    const Eigen::Vector3d n[] = {normal(strips[0].jet(i)), normal(strips[1].jet(i))};
-    const int left = curve.sides[0].onLeft ? 0 : 1;
-    const double sine = n[left].cross(n[1 - left]).dot(strips[0].direction(i));
-    found.push_back(n[0].dot(n[1]) > 0 ? sine : std::copysign(HUGE_VAL, sine));
-  }
-  return found;
-}
-
-/// Whether less turning makes a curve's sheets a ridge than a valley.
-bool isRidge(const std::vector<double>& angles) {
-  double ridge = 0, valley = 0;
-  for (const double angle : angles) {
-    ridge += std::max(0.0, kFold - angle);
-    valley += std::max(0.0, kFold + angle);
-  }
-  return ridge <= valley;
-}
-
-/// From 0 to 1, without slope at both ends.
-double smoothStep(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
-}
-
 /// How sheets are turned about the curve that they move onto.
 enum class Turning {
   ToFold,    ///< until they make the fold, where they are not far from it
@@ -164,37 +140,44 @@ enum class Turning {
 };
 
 /// Moves onto the curve.
-/// \param angles between the sheets, by sample \param share  of the turning that is this sheet's
-void appendMovesToCurve(const StripMoves& strip, bool onLeft, bool ridge, const std::vector<double>& angles,
-                        double share, Turning turning, double gap, std::vector<SurfaceMove>& moves) {
+void appendMovesToCurve(const StripMoves& strip, const FoldPlan& plan, int side, bool onLeft, Turning turning,
+                        const JoinLimits& limits, double gap, std::vector<SurfaceMove>& moves) {
+  constexpr double share = 0.5;  // of the turning that is this sheet's
   for (std::size_t i = 0; i < strip.samples(); ++i) {
-    if (!strip.append(i, strip.point(i), gap / 2, {}, moves)) continue;
-    const double angle = ridge ? angles[i] : -angles[i];
-    const bool turns = turning != Turning::None && std::abs(angle) < kKept;
-    double turn = turns ? kFold - angle : 0;
-    if (turn < 0)
-      turn *= turning == Turning::ToFold ? 1 - smoothStep((angle - kFlattened) / (kKept - kFlattened)) : 0;
-    strip.setSlope((onLeft == ridge ? -share : share) * turn, turns ? kFoldMissed : HUGE_VAL, moves);
+    const double error = plan.near[i] ? std::min(gap / 2, limits.tangentError) : gap / 2;
+    if (!strip.append(i, strip.point(i), error, {}, moves)) continue;
+    const std::size_t placed = moves.size() - 1;
+    if (!plan.given[side][i]) {
+      const double angle = plan.kind[i] * plan.angle[i];
+      const bool turns = turning != Turning::None && angle < kKept && angle > -kTurned;
+      double turn = turns ? plan.level[i] - angle : 0;
+      if (turn < 0)
+        turn *= turning == Turning::ToFold ? 1 - smoothStep((angle - kFlattened) / (kKept - kFlattened)) : 0;
+      strip.setSlope((onLeft ? -share : share) * plan.kind[i] * turn, turns ? kFoldMissed : HUGE_VAL, moves);
+    }
+    if (plan.near[i] || getenv("TQ_ALL")) moves[placed].weight *= kPlaceWeight;
   }
 }
 
 /// What sheet `moving` has to move by in a corner to meet the one of lower rank that has the same tangents
 /// there.
+/// \param own the sheet before it moves
 template <class Rank>
-void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<Sheet>& sheets,
-                      const Rank& rank, double error, std::vector<SurfaceMove>& moves) {
-  const auto own = std::find_if(corner.uses.begin(), corner.uses.end(),
-                                [&](const SheetCorner::Use& use) { return use.sheet == moving; });
-  if (own == corner.uses.end()) return;
-  const Eigen::Vector2d y = sheets[moving].footPoint(corner.point, own->at);
-  const auto at = sheets[moving].jet(y);
+void appendCornerMove(const SheetCorner& corner, int moving, const Sheet& own,
+                      const std::vector<Sheet>& sheets, const Rank& rank, double error,
+                      std::vector<SurfaceMove>& moves) {
+  const auto use = std::find_if(corner.uses.begin(), corner.uses.end(),
+                                [&](const SheetCorner::Use& u) { return u.sheet == moving; });
+  if (use == corner.uses.end()) return;
+  const Eigen::Vector2d y = own.footPoint(corner.point, use->at);
+  const auto at = own.jet(y);
   const SheetCorner::Use* still = nullptr;
   SplineSurface::Jet there;
-  for (const auto& use : corner.uses) {
-    if (!(rank(use.sheet) < rank(moving)) || (still && !(rank(use.sheet) < rank(still->sheet)))) continue;
-    const auto jet = sheets[use.sheet].jet(sheets[use.sheet].footPoint(corner.point, use.at));
+  for (const auto& other : corner.uses) {
+    if (!(rank(other.sheet) < rank(moving)) || (still && !(rank(other.sheet) < rank(still->sheet)))) continue;
+    const auto jet = sheets[other.sheet].jet(sheets[other.sheet].footPoint(corner.point, other.at));
     if (normal(jet).cross(normal(at)).norm() > kSharp) continue;
-    still = &use;
+    still = &other;
     there = jet;
   }
   if (!still) return;
@@ -203,71 +186,189 @@ void appendCornerMove(const SheetCorner& corner, int moving, const std::vector<S
   moves.push_back({y, n.dot(there.s - at.s) * n, {1, 1}, kCornerWeight, error});
 }
 
+/// One side of a curve.
+struct CurveSide {
+  std::size_t curve;
+  int side;
+};
+
+class SheetJoiner {
+ public:
+  SheetJoiner(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
+              const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
+              const JoinLimits& limits, int threads, const SheetMover& mover)
+      : sheets_(sheets),
+        fitted_(sheets),
+        curves_(curves),
+        corners_(corners),
+        mayMove_(mayMove),
+        limits_(limits),
+        threads_(threads),
+        mover_(mover),
+        sides_(sheets.size()),
+        states_(sheets.size()) {
+    for (std::size_t c = 0; c < curves.size(); ++c)
+      for (const int side : {0, 1}) sides_[curves[c].sides[side].sheet].push_back({c, side});
+    plans_.resize(curves.size());
+    parallelEach(int(curves.size()), threads, [&](int c) {
+      const auto& [a, b] = curves[c].sides;
+      if (onCurve(c))
+        plans_[c] = planFold(*curves[c].sampled, {&fitted_[a.sheet], &fitted_[b.sheet]}, a.onLeft,
+                             {fixedEnds(c, 0), fixedEnds(c, 1)});
+    });
+  }
+
+  JoinedSheets join() {
+    // Sheets that move onto curves alone do not depend on each other.
+    std::vector<int> independent;
+    for (int k = 0; k < int(sheets_.size()); ++k)
+      if (mayMove_[k] && !sides_[k].empty() && movesOntoCurvesOnly(k)) independent.push_back(k);
+    auto states = states_;
+    parallelEach(int(independent.size()), threads_,
+                 [&](int i) { states[independent[i]] = moved(independent[i]); });
+    states_ = std::move(states);
+    for (int k = 0; k < int(sheets_.size()); ++k)
+      if (mayMove_[k] && !movesOntoCurvesOnly(k)) states_[k] = moved(k);
+    // Those that touch sheets which did not reach their curves follow these.
+    for (int k = 0; k < int(sheets_.size()); ++k)
+      if (mayMove_[k] && std::any_of(sides_[k].begin(), sides_[k].end(),
+                                     [&](const CurveSide& s) { return onCurve(s.curve) && follows(k, s); }))
+        moveAgain(k);
+    JoinedSheets result;
+    for (int k = 0; k < int(sheets_.size()); ++k)
+      if (states_[k].moved) result.moved.push_back(k);
+    for (std::size_t c = 0; c < curves_.size(); ++c) {
+      const auto& [a, b] = curves_[c].sides;
+      const bool folded = onCurve(c) && states_[a.sheet].turned && states_[b.sheet].turned;
+      result.folded.push_back(folded);
+      result.tangent.push_back(folded ? plans_[c].tangent : std::vector<TangentStretch>());
+    }
+    return result;
+  }
+
+ private:
+  /// What became of a sheet.
+  struct State {
+    bool moved = false, turned = false;
+    bool stuck = false;  ///< it is not on its curves
+  };
+
+  bool onCurve(std::size_t c) const {
+    const auto& [a, b] = curves_[c].sides;
+    return curves_[c].smooth && mayMove_[a.sheet] && mayMove_[b.sheet];
+  }
+  std::pair<bool, int> rank(int sheet) const { return {bool(mayMove_[sheet]), sheet}; }
+  int otherSheet(const CurveSide& s) const { return curves_[s.curve].sides[1 - s.side].sheet; }
+  /// Whether sheet `k` moves onto the other one rather than onto the curve.
+  bool follows(int k, const CurveSide& s) const {
+    const int still = otherSheet(s);
+    if (!onCurve(s.curve)) return rank(still) < rank(k);
+    return states_[still].stuck && (!states_[k].stuck || still < k);
+  }
+
+  /// Direction out of the corner at the end of a curve.
+  Eigen::Vector3d wayOut(std::size_t c, int end) const {
+    const auto& p = curves_[c].sampled->point;
+    return (end == 0 ? p[1] - p[0] : p[p.size() - 2] - p.back()).normalized();
+  }
+  /// By end of a curve: whether another one that ends there fixes the tangent plane of the sheet on this
+  /// side.
+  std::array<bool, 2> fixedEnds(std::size_t c, int side) const {
+    std::array<bool, 2> fixed{};
+    for (const int end : {0, 1})
+      for (const auto& other : sides_[curves_[c].sides[side].sheet])
+        for (const int otherEnd : {0, 1}) {
+          if (other.curve == c && otherEnd == end) continue;
+          if (curves_[other.curve].corners[otherEnd] != curves_[c].corners[end]) continue;
+          fixed[end] |= (wayOut(c, end) + wayOut(other.curve, otherEnd)).norm() > kBends;
+        }
+    return fixed;
+  }
+
+  /// Whether where sheet `k` moves depends on no other one.
+  bool movesOntoCurvesOnly(int k) const {
+    return std::all_of(sides_[k].begin(), sides_[k].end(),
+                       [&](const CurveSide& s) { return onCurve(s.curve); }) &&
+           std::all_of(corners_.begin(), corners_.end(),
+                       [&](const SheetCorner& c) { return !holds(c, k) || endsACurveOf(k, c); });
+  }
+  static bool holds(const SheetCorner& corner, int k) {
+    return std::any_of(corner.uses.begin(), corner.uses.end(),
+                       [&](const SheetCorner::Use& use) { return use.sheet == k; });
+  }
+  bool endsACurveOf(int k, const SheetCorner& corner) const {
+    return std::any_of(sides_[k].begin(), sides_[k].end(), [&](const CurveSide& s) {
+      const auto& ends = curves_[s.curve].corners;
+      return onCurve(s.curve) && (ends[0] == corner.id || ends[1] == corner.id);
+    });
+  }
+
+  std::vector<SurfaceMove> movesOf(int k, Turning turning) const {
+    std::vector<SurfaceMove> moves;
+    for (const auto& s : sides_[k]) {
+      const auto& curve = curves_[s.curve];
+      const StripMoves strip(*curve.sampled, s.side, fitted_[k]);
+      if (follows(k, s)) {
+        appendMovesOnto(strip, sheets_[otherSheet(s)], curve.sampled->foot[1 - s.side], limits_.width,
+                        curve.gap, moves);
+      } else if (movesToCurve(k, s)) {
+        appendMovesToCurve(strip, plans_[s.curve], s.side, curve.sides[s.side].onLeft, turning, limits_,
+                           curve.gap, moves);
+      }
+    }
+    for (const auto& corner : corners_)
+      if (!endsACurveOf(k, corner))
+        appendCornerMove(
+            corner, k, fitted_[k], sheets_, [&](int sheet) { return rank(sheet); }, limits_.gap, moves);
+    return moves;
+  }
+  bool movesToCurve(int k, const CurveSide& s) const {
+    return onCurve(s.curve) && !states_[otherSheet(s)].stuck && !states_[k].stuck;
+  }
+
+  /// Moves sheet `k`.
+  State moved(int k) {
+    const bool toCurve = std::any_of(sides_[k].begin(), sides_[k].end(),
+                                     [&](const CurveSide& s) { return movesToCurve(k, s); });
+    for (const bool lastResort : {false, true})
+      for (const auto turning : {Turning::ToFold, Turning::AwayFrom, Turning::None}) {
+        if (turning != Turning::ToFold && !toCurve) continue;
+        const auto moves = movesOf(k, turning);
+        if (moves.empty()) return {};
+        const int most = kMorePoles * int(fitted_[k].surface.poles.size()) + kFewPoles;
+        if (!mover_.move(sheets_, k, moves, toCurve ? kFadeFromCurve : kFade, most, lastResort)) continue;
+        return {true, toCurve && turning != Turning::None, false};
+      }
+    return {false, false, true};
+  }
+  void moveAgain(int k) {
+    const Sheet before = sheets_[k];
+    sheets_[k] = fitted_[k];
+    if (const State state = moved(k); !state.stuck)
+      states_[k] = {state.moved, state.turned, states_[k].stuck};
+    else
+      sheets_[k] = before;
+  }
+
+  std::vector<Sheet>& sheets_;
+  const std::vector<Sheet> fitted_;
+  const std::vector<TangentCurve>& curves_;
+  const std::vector<SheetCorner>& corners_;
+  const std::vector<char>& mayMove_;
+  const JoinLimits limits_;
+  int threads_;
+  const SheetMover& mover_;
+  std::vector<std::vector<CurveSide>> sides_;  ///< by sheet
+  std::vector<FoldPlan> plans_;                ///< by curve
+  std::vector<State> states_;                  ///< by sheet
+};
+
 }  // namespace
 
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
                                const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                               const JoinLimits& limits, const SheetMover& mover) {
-  const auto rank = [&](int sheet) { return std::pair(bool(mayMove[sheet]), sheet); };
-  std::vector<char> onCurve, ridge;  // by curve
-  for (const auto& curve : curves) {
-    onCurve.push_back(curve.smooth && mayMove[curve.sides[0].sheet] && mayMove[curve.sides[1].sheet]);
-    ridge.push_back(onCurve.back() && isRidge(angles(curve, sheets)));
-  }
-  std::vector<char> stuck(sheets.size()), turned(sheets.size());  // not on their curves; on them, and turned
-  std::set<int> moved;
-  /// \param onlyToStuck whether it has only to follow sheets that are stuck
-  const auto move = [&](int k, bool onlyToStuck) {
-    using enum Turning;
-    bool toCurve = false;  // the same for every turning
-    for (const auto& [turning, lastResort] : {std::pair(ToFold, false),
-                                              {AwayFrom, false},
-                                              {None, false},
-                                              {ToFold, true},
-                                              {AwayFrom, true},
-                                              {None, true}}) {
-      if (turning != ToFold && !toCurve) continue;
-      std::vector<SurfaceMove> moves;
-      bool touches = false, toStuck = false;
-      toCurve = false;
-      for (std::size_t c = 0; c < curves.size(); ++c)
-        for (const int side : {0, 1}) {
-          const auto& own = curves[c].sides[side];
-          if (own.sheet != k) continue;
-          touches = true;
-          const int still = curves[c].sides[1 - side].sheet;
-          const StripMoves strip(*curves[c].sampled, side, sheets[k]);
-          if (onCurve[c] && !stuck[still] && !stuck[k]) {
-            appendMovesToCurve(strip, own.onLeft, ridge[c], angles(curves[c], sheets),
-                               turned[still] ? 1 : 0.5, turning, curves[c].gap, moves);
-            toCurve = true;
-          } else if (onCurve[c] ? stuck[still] && (!stuck[k] || still < k) : rank(still) < rank(k)) {
-            appendMovesOnto(strip, sheets[still], curves[c].sampled->foot[1 - side], limits.width,
-                            curves[c].gap, moves);
-            toStuck |= onCurve[c];
-          }
-        }
-      if (!touches || (onlyToStuck && !toStuck)) return;
-      for (const auto& corner : corners) appendCornerMove(corner, k, sheets, rank, limits.gap, moves);
-      if (moves.empty()) return;
-      const int most = kMorePoles * int(sheets[k].surface.poles.size()) + kFewPoles;
-      if (mover.move(sheets, k, moves, toCurve ? kFadeFromCurve : kFade, most, lastResort)) {
-        moved.insert(k);
-        turned[k] = toCurve && turning != None;
-        return;
-      }
-      if (turning == None && lastResort && !onlyToStuck) stuck[k] = true;
-    }
-  };
-  const auto folds = [&](std::size_t c) {
-    return onCurve[c] && turned[curves[c].sides[0].sheet] && turned[curves[c].sides[1].sheet];
-  };
-  for (const bool onlyToStuck : {false, true})
-    for (int k = 0; k < int(sheets.size()); ++k)
-      if (mayMove[k]) move(k, onlyToStuck);
-  JoinedSheets result{{moved.begin(), moved.end()}, {}};
-  for (std::size_t c = 0; c < curves.size(); ++c) result.folded.push_back(folds(c));
-  return result;
+                               const JoinLimits& limits, int threads, const SheetMover& mover) {
+  return SheetJoiner(sheets, curves, corners, mayMove, limits, threads, mover).join();
 }
 
 }  // namespace trimquad

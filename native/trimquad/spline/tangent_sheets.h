@@ -19,8 +19,9 @@ struct TangentCurve {
   };
   const SampledCurve* sampled;
   std::array<Side, 2> sides;
-  bool smooth;  ///< whether the curve is the model's own, no chain of mesh edges
-  double gap;   ///< what may be left between the sheets, model units
+  bool smooth;                 ///< whether the curve is the model's own, no chain of mesh edges
+  double gap;                  ///< what may be left between the sheets, model units
+  std::array<int, 2> corners;  ///< of the model, at its start and end
 };
 
 /// Largest gap that two sheets have after one has moved onto the other, by the model's diagonal.
@@ -29,22 +30,25 @@ inline constexpr double kTangentGap = 2e-7;
 struct JoinedSheets {
   std::vector<int> moved;    ///< the sheets that have moved, ascending
   std::vector<char> folded;  ///< by curve: whether its sheets now have a slight edge there
+  std::vector<std::vector<TangentStretch>> tangent;  ///< by curve that is folded: where they have none
 };
 
 /// How sheets are to be joined, model units.
 struct JoinLimits {
-  double width;  ///< half of that of the strip in which one comes to be nearly tangent to the other
-  double gap;    ///< what may be left between them in corners
+  double width;         ///< half of that of the strip in which one comes to be nearly tangent to the other
+  double gap;           ///< what may be left between them in corners
+  double tangentError;  ///< by how much they may miss a curve where they make no edge
 };
 
 /// Moves sheets so that they agree with the others on the curves along which these touch them, and nearly in
 /// a strip around, and in the corners in which such curves end. Where both may move and the curve is smooth,
 /// both come to lie on it, and are turned about it until they make an edge of a fraction of a degree (a
 /// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, or the
-/// one that may. \param mayMove by sheet
+/// one that may. Around corners in which several such curves fix a sheet's tangent plane, and where an edge
+/// changes from a ridge to a valley, the sheets stay tangent. \param mayMove by sheet
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
                                const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                               const JoinLimits& limits, const SheetMover& mover);
+                               const JoinLimits& limits, int threads, const SheetMover& mover);
 
 /// Sine of the angle between folded sheets from which on their intersection is looked for.
 inline constexpr double kSmallestFold = 5e-4;

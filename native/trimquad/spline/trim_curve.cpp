@@ -300,6 +300,7 @@ std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& si
 std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    const std::vector<SheetSide>& sides, double tolerance,
                                                    double reach, double smallestAngle,
+                                                   const std::vector<TangentStretch>& tangent,
                                                    const Progress& progress) {
   std::vector<CurveSample<3>> samples;
   for (std::size_t i = 0; i < sampled.s.size(); ++i)
@@ -318,7 +319,7 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
     guesses.push_back(guess);
   }
   IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), std::move(guesses),
-                                 reach, smallestAngle);
+                                 reach, smallestAngle, tangent);
   // The ends themselves may lie beyond the surfaces' common point; the corners settle those.
   constexpr double end = 0.5 / 64;
   const int tests = smallestAngle < kSmallestCrossing ? 2048 : 64;
@@ -345,9 +346,9 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
   };
   const auto onA = [&](double s) -> Eigen::Vector2d { return solved(s).head<2>(); };
   const auto onB = [&](double s) -> Eigen::Vector2d { return solved(s).tail<2>(); };
-  const auto deviation = [&](double, const Eigen::Matrix<double, 7, 1>& x) {
+  const auto deviation = [&](double s, const Eigen::Matrix<double, 7, 1>& x) {
     return std::max((sheetA.jet(x.head<2>()).s - x.tail<3>()).norm(),
-                    (sheetB.jet(x.segment<2>(2)).s - x.tail<3>()).norm());
+                    (sheetB.jet(x.segment<2>(2)).s - x.tail<3>()).norm() - intersection.apart(s));
   };
   std::vector<TrimPiece> pieces;
   try {
@@ -357,7 +358,8 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
     auto breaks = knotCrossings(sheetA, onA, a, b);
     const auto breaksB = knotCrossings(sheetB, onB, a, b);
     breaks.insert(breaks.end(), breaksB.begin(), breaksB.end());
-    breaks.insert(breaks.end(), reference.knots.begin(), reference.knots.end());
+    for (const auto* more : {&reference.knots, &intersection.tangentEnds()})
+      breaks.insert(breaks.end(), more->begin(), more->end());
     const int continuity = std::max(1, std::min(sheetA.continuity(), sheetB.continuity()));
     const auto ends = edgeEnds(a, b, std::move(cuts), closed);
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {

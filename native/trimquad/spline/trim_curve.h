@@ -59,10 +59,11 @@ std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& si
                                 const CurveCloseness& closeness, const Progress& progress);
 
 /// The curve in which two sheets cut each other along a model curve; null where the sine of the angle between
-/// them is below `smallestAngle`.
+/// them is below `smallestAngle`, but for tangent stretches.
 std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    const std::vector<SheetSide>& sides, double tolerance,
                                                    double reach, double smallestAngle,
+                                                   const std::vector<TangentStretch>& tangent,
                                                    const Progress& progress);
 
 /// Pieces of the intersection curve between the points nearest to `start` and `end`, cut at both sheets'

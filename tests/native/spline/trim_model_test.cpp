@@ -112,6 +112,17 @@ TEST(TrimModel, twoCurvedSheetsShareOneEdge) {
   EXPECT_FALSE(model.shells[0].solid);
 }
 
+/// Sine of the angle between a model's two faces near a point.
+double angleAt(const SplineModel& model, const Eigen::Vector3d& p, const Eigen::Vector2d& guess) {
+  std::vector<Eigen::Vector3d> normals;
+  for (const auto& face : model.faces) {
+    const Eigen::Vector2d foot = face.surface.footPoint(p, guess);
+    const auto jet = face.surface.jet(foot[0], foot[1]);
+    normals.push_back(jet.su.cross(jet.sv).normalized());
+  }
+  return normals[0].cross(normals[1]).norm();
+}
+
 /// Apart by up to 4e-4, now above and now below.
 double slowlyVarying(double x, double y) {
   return 2e-4 * (std::sin(1.1 * x + 0.3) + std::cos(1.7 * y));
@@ -154,13 +165,7 @@ TEST(TrimModel, sheetsThatMakeAnEdgeInPlacesOnlyKeepItThere) {
     expectExact(model);
     EXPECT_EQ(model.edges.size(), 7u);
     for (double y = 0.1; y < 6; y += 0.1) {
-      std::vector<Eigen::Vector3d> normals;
-      for (const auto& face : model.faces) {
-        const Eigen::Vector2d foot = face.surface.footPoint(wavy(5, y), {5, y});
-        const auto jet = face.surface.jet(foot[0], foot[1]);
-        normals.push_back(jet.su.cross(jet.sv).normalized());
-      }
-      const double angle = normals[0].cross(normals[1]).norm();
+      const double angle = angleAt(model, wavy(5, y), {5, y});
       EXPECT_GE(angle, 0.005) << y;
       EXPECT_LE(angle, std::max(0.015, slope(y))) << y;
     }
@@ -193,7 +198,29 @@ TEST(TrimModel, sheetsAroundACornerAgreeThere) {
   EXPECT_EQ(model.edges.size(), 12u);
   EXPECT_EQ(model.vertices.size(), 9u);
   EXPECT_EQ(model.moved.size(), 4u);  // all into their common corner
-  EXPECT_LE(measuredGaps(model).edge, 2.5e-7 * quarters.model.diagonal);
+  expectExact(model);
+}
+
+TEST(TrimModel, aRidgeThatBecomesAValleyIsTangentBetween) {
+  const auto slope = [](double y) { return 0.4 * std::sin(std::numbers::pi / 3 * y); };
+  auto sheets =
+      tangentSheets([&](double x, double y) { return slope(y) * (x - 5) * std::exp(-(x - 5) * (x - 5)); });
+  const auto model = sheets.trim();
+  expectExact(model);
+  EXPECT_EQ(model.edges.size(), 7u);
+  EXPECT_LE(angleAt(model, wavy(5, 3), {5, 3}), 0.005);
+  for (const double y : {0.5, 1.5, 2.5, 3.5, 4.5, 5.5})
+    EXPECT_GE(angleAt(model, wavy(5, y), {5, y}), 0.009) << y;
+}
+
+TEST(TrimModel, aSlightValleyAlongARidgeIsTurnedIntoARidge) {
+  const auto slope = [](double y) { return 0.17 - 0.3 * std::exp(-(y - 3) * (y - 3)); };
+  auto sheets = tangentSheets(
+      [&](double x, double y) { return slope(y) * (x - 5) * std::exp(-8 * (x - 5) * (x - 5)); });
+  const auto model = sheets.trim();
+  expectExact(model);
+  EXPECT_EQ(model.edges.size(), 7u);
+  for (double y = 0.1; y < 6; y += 0.1) EXPECT_GE(angleAt(model, wavy(5, y), {5, y}), 0.008) << y;
 }
 
 TEST(TrimModel, closedSheetsAreMovedAndStayClosed) {
