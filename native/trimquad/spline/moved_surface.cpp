@@ -109,7 +109,6 @@ std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const st
       worst = std::max(worst, off);
       missed.push_back(move);
     }
-    if (getenv("TQ_DUMP")) { fprintf(stderr,"round %d poles %d missed %zu of %zu worst %g\n",round,space.poles(),missed.size(),moves.size(),worst); if(round>=4) for(auto&m:missed) fprintf(stderr,"   at %g %g by %g err %g off %g\n",m.at[0],m.at[1],m.by.norm(),m.error,(way->point(m.at[0],m.at[1])-m.by).norm()/m.error);}
     if (missed.empty()) return sum(surface, *way);
     if (worst <= (best ? kWorthMorePoles : 1) * left) {
       best = std::move(way);

@@ -155,7 +155,7 @@ void appendMovesToCurve(const StripMoves& strip, const FoldPlan& plan, int side,
         turn *= turning == Turning::ToFold ? 1 - smoothStep((angle - kFlattened) / (kKept - kFlattened)) : 0;
       strip.setSlope((onLeft ? -share : share) * plan.kind[i] * turn, turns ? kFoldMissed : HUGE_VAL, moves);
     }
-    if (plan.near[i] || getenv("TQ_ALL")) moves[placed].weight *= kPlaceWeight;
+    if (plan.near[i]) moves[placed].weight *= kPlaceWeight;
   }
 }
 
