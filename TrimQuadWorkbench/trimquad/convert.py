@@ -45,6 +45,8 @@ class Result:
         self.warnings = []
         self.shape_counts = {}
         self.seconds = {}
+        self.work_of_replaced = 0  # of the fits of regions that were replaced by their parts
+        self.exhausted = False  # no other ways of fitting any region are tried
         self.started = time.monotonic()
 
     @property
@@ -53,6 +55,11 @@ class Result:
         if self.native_shape is None:
             return None
         return shape_from_bytes(load().shape_to_freecad(self.native_shape))
+
+    @property
+    def work(self):
+        """Of all fits, in steps (see RegionResult.work)."""
+        return self.work_of_replaced + sum(r.work for r in self.regions)
 
     @property
     def failed(self):
@@ -80,6 +87,7 @@ class Result:
                 self.regions.append(part)
                 added.append((index, part))
             names = tuple(part.name for _, part in added[-parts[number].count :])
+            self.work_of_replaced += whole.work
             self.cuts.append(
                 Cut(whole.name, whole.error, tuple(parts[number].edges), names, sum(whole.seconds.values()))
             )

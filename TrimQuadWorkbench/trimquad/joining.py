@@ -41,6 +41,7 @@ def trim(result, progress):
     elsewhere = 0.0
     checks, memory = native.FaceChecks(), native.TrimMemory()
     while any(r.fitted is not None for r in result.regions):
+        result.exhausted = result.work > regions.MOST_WORK_OF_MODEL
         try:
             with progress.stage("trim") as native_progress:
                 result.spline = native.trim_model(
@@ -154,6 +155,8 @@ def _refit(item, charts, error, result, progress):
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     try:
+        if regions.exhausted(item, result):
+            raise error
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):
             item.refits += 1

@@ -5,7 +5,7 @@ from typing import NamedTuple, Tuple
 
 import numpy
 
-from .cuts import CUTS, cut_failed
+from .cuts import CUTS, cut_failed, may_cut
 from .error import Error, system_error
 from .native import load
 from .polygons import Polygons
@@ -15,6 +15,9 @@ ENOUGH = 0.95
 # Poles that a fit to a part of the tolerance may take, by those that there are, and how many more in any case. The part 0.1
 # takes three times as many of smooth surfaces; more are no help where these are not.
 MORE_POLES, FEW_POLES = 5, 1000
+# Work of a region's fits after which no other ways of fitting it are tried; less where it can be cut instead. And the same
+# for a whole model. 1e6 steps take about half a second. Work rather than time, so that results do not depend on the machine.
+MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 60e6, 20e6, 150e6
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
@@ -76,6 +79,7 @@ class RegionResult:
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.smoothings = {}  # by chart: in how many steps its surface is made smoother, for the same reason
         self.seconds = {}
+        self.work = 0  # of its fits: samples whose feet were looked for
         self.cut_from = None
         self.fitted_closer = False
         self.left_out = None  # surfaces that could not be trimmed, and those around then
@@ -245,6 +249,8 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
     for way in ways:
         if way in item.other_maps:
             continue
+        if exhausted(item, result):
+            break
         item.other_maps.append(way)
         region = _without_creases(item, result) if way.creases_rounded else item.region
         if region is None:
@@ -278,11 +284,17 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
             if error.kind == "cancelled":
                 raise
         finally:
+            item.work += other.work
             for stage, seconds in other.seconds.items():
                 item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
             if item.fitted_from is not other:
                 native.place_region(result.model, index, placed)
     return False
+
+
+def exhausted(item, result):
+    """Whether fits took so much work that no other ways of fitting a region are to be tried."""
+    return result.exhausted or item.work > (MOST_WORK_BEFORE_CUT if item.cuts_left and may_cut(result) else MOST_WORK)
 
 
 def _without_creases(item, result):
@@ -379,19 +391,18 @@ def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0,
     options = result.options
     native = load()
     tolerance = part * result.fit_tolerance
-    return native.fit_surface(
-        item.fitted_from.mapped_region,
-        item.fitted_from.grid,
-        native.FitOptions(
-            tolerance=tolerance,
-            enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
-            smallest_rectangle=smallest_rectangle,
-            bisections=item.bisections,
-            smoothings=item.smoothings,
-            degree=options.degree,
-            slides=slides,
-            threads=max(1, options.threads // len(result.regions)),
-            max_poles=None if part == 1 else MORE_POLES * item.fitted.control_points + FEW_POLES,
-        ),
-        progress,
+    fit_options = native.FitOptions(
+        tolerance=tolerance,
+        enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
+        smallest_rectangle=smallest_rectangle,
+        bisections=item.bisections,
+        smoothings=item.smoothings,
+        degree=options.degree,
+        slides=slides,
+        threads=max(1, options.threads // len(result.regions)),
+        max_poles=None if part == 1 else MORE_POLES * item.fitted.control_points + FEW_POLES,
     )
+    try:
+        return native.fit_surface(item.fitted_from.mapped_region, item.fitted_from.grid, fit_options, progress)
+    finally:
+        item.work += progress.work

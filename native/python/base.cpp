@@ -71,6 +71,7 @@ void bindBase(py::module_& m) {
       .def(py::init<>())
       .def("cancel", &Progress::cancel)
       .def_property_readonly("cancelled", &Progress::cancelled)
+      .def_property_readonly("work", &Progress::work)
       .def_property_readonly("fraction", &Progress::fraction);
 }
 

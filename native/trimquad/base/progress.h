@@ -19,12 +19,17 @@ class Progress {
     check();
   }
 
+  /// What was done so far, in steps of any kind, that does not depend on the machine's speed.
+  long work() const { return work_; }
+  void addWork(long steps) const { work_ += steps; }
+
   /// Throws Error(Cancelled) once `cancel` was called. Call it in every loop that can last over 0.1 s.
   void check() const;
 
  private:
   std::atomic<bool> cancelled_{false};
   mutable std::atomic<double> fraction_{0};
+  mutable std::atomic<long> work_{0};
 };
 
 }  // namespace trimquad

@@ -181,6 +181,7 @@ void FitRounds::solve() {
 /// Sets each sample's distance. Gives the feet as well: each one's place, or the sample's own where the foot
 /// lies more than a knot interval away, on the other side or where a crease ends the way to it.
 Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const {
+  progress_.addWork(long(samples.size()));
   feet.resize(samples.size());
   std::vector<char> turnedOver(samples.size(), 0);
   parallelParts(int(samples.size()), threads_, [&](int begin, int end) {

@@ -173,6 +173,29 @@ class EndPull {
   double off_;
 };
 
+/// The foot of a point between two places on a sheet. Where the sheet bends sharply a point has several: the
+/// one that goes on best between both places counts, and where all are far from there what is halfway
+/// between, if that is within `reach`.
+Eigen::Vector2d footBetween(const Sheet& sheet, const Eigen::Vector3d& point, const Eigen::Vector2d& p,
+                            const Eigen::Vector2d& q, double reach) {
+  const Eigen::Vector2d middle = (p + q) / 2;
+  const Eigen::Vector2d foot = sheet.footPoint(point, middle);
+  const auto jet = sheet.jet(middle);
+  const auto away = [&](const Eigen::Vector2d& x) {
+    const Eigen::Vector2d by = x - middle;
+    return (jet.su * by[0] + jet.sv * by[1]).norm();
+  };
+  const double limit = away(p) + reach;
+  if (away(foot) <= limit) return foot;
+  Eigen::Vector2d best = foot;
+  for (const auto& from : {p, q}) {
+    const Eigen::Vector2d other = sheet.footPoint(point, from);
+    if (away(other) < away(best) && (sheet.jet(other).s - point).norm() <= reach) best = other;
+  }
+  if (away(best) > limit && (jet.s - point).norm() <= reach) return middle;
+  return best;
+}
+
 /// The smooth curve on the sheet that follows the sampled curve, from the side's start to its end.
 PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSide& side,
                       const CurveCloseness& closeness, const Progress& progress) {
@@ -182,9 +205,12 @@ PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSid
       end(*side.sheet, feet.back(), side.end, tolerance);
   // Of the sampled curve, by its parameter: those of the samples slide along the fitted one.
   const double length = sampled.s.back() - sampled.s.front();
-  const auto sample = [&](double s, double t, const Eigen::Vector3d& p, const Eigen::Vector2d& foot) {
+  const auto pull = [&](double t) -> Eigen::Vector2d {
     const double from = sampled.lengthAt(t) - sampled.s.front();
-    const Eigen::Vector2d x = foot + start.at(from, length) + end.at(length - from, length);
+    return start.at(from, length) + end.at(length - from, length);
+  };
+  const auto sample = [&](double s, double t, const Eigen::Vector3d& p, const Eigen::Vector2d& foot) {
+    const Eigen::Vector2d x = foot + pull(t);
     const double off = (side.sheet->jet(foot).s - p).norm();
     const double allowed = std::max(tolerance, std::sqrt(std::max(0.0, inSpace * inSpace - off * off)));
     return CurveSample<2>{s, t, x, metric(*side.sheet, x) * (tolerance / allowed)};
@@ -197,7 +223,9 @@ PlaneCurve planeCurve(const SampledCurve& sampled, int sideIndex, const SheetSid
   const auto between = [&](const CurveSample<2>& p, const CurveSample<2>& q) {
     const double t = (p.t + q.t) / 2;
     const Eigen::Vector3d point = sampled.curve->curve->point(t);
-    return sample((p.s + q.s) / 2, t, point, side.sheet->footPoint(point, (p.point + q.point) / 2));
+    return sample((p.s + q.s) / 2, t, point,
+                  footBetween(*side.sheet, point, p.point - pull(p.t), q.point - pull(q.t),
+                              std::max(tolerance, inSpace)));
   };
   return located(side, sampled, [&] {
     return fitCurve<2>(samples, 3, tolerance, SampleParameters::Sliding, between, progress);
