@@ -33,7 +33,7 @@ def cut_failed(result, progress) -> List[Tuple[int, object]]:
     Returns the numbers and the RegionResults of the parts, which are still to be converted. Only a CAD model with
     `features` trim is cut: otherwise its edges are to lie inside the surfaces.
     """
-    if not may_cut(result):
+    if not _may_cut(result):
         return []
     parts = {}
     for index, item in enumerate(result.regions):
@@ -48,14 +48,22 @@ def cut_failed(result, progress) -> List[Tuple[int, object]]:
 def bends_sharply(item, result, progress):
     """Whether a region can be cut where it bends sharply and that was not tried yet. If so, cut_failed() does it once the
     region has an error."""
-    if not may_cut(result) or item.cuts_left < len(CUTS):
+    if not _may_cut(result) or item.cuts_left < len(CUTS):
         return False
     item.parts = _next_parts(item, result.regions.index(item), result, progress)
     return item.parts is not None
 
 
-def may_cut(result):
-    """Whether regions that fail are cut."""
+def has_parts(item, result, progress):
+    """Whether a region will be cut if it fails."""
+    if not (_may_cut(result) and item.cuts_left):
+        return False
+    if item.has_parts is None:
+        item.has_parts = _parts(item, result.regions.index(item), None, False, result, progress) is not None
+    return item.has_parts
+
+
+def _may_cut(result):
     return result.source.kind == "cad" and result.options.features == "trim"
 
 
@@ -66,9 +74,13 @@ def _next_parts(item, index, result, progress):
     place = item.error.position if way == "place" else None
     if way == "place" and place is None:
         return None
+    return _parts(item, index, place, way == "creases", result, progress)
+
+
+def _parts(item, index, place, creases, result, progress):
     try:
         with progress.stage("cut", item.name) as native_progress:
-            return load().region_parts(result.model, index, place, way == "creases", native_progress)
+            return load().region_parts(result.model, index, place, creases, native_progress)
     except Error as error:
         if error.kind == "cancelled":
             raise

@@ -155,7 +155,7 @@ def _refit(item, charts, error, result, progress):
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     try:
-        if regions.exhausted(item, result):
+        if regions.exhausted(item, result, progress):
             raise error
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):

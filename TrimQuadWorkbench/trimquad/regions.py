@@ -5,7 +5,7 @@ from typing import NamedTuple, Tuple
 
 import numpy
 
-from .cuts import CUTS, cut_failed, may_cut
+from .cuts import CUTS, cut_failed, has_parts
 from .error import Error, system_error
 from .native import load
 from .polygons import Polygons
@@ -85,6 +85,7 @@ class RegionResult:
         self.left_out = None  # surfaces that could not be trimmed, and those around then
         self.cuts_left = len(CUTS)
         self.parts = None  # of the cut that comes next, where it is known
+        self.has_parts = None  # whether it consists of several, where that is known
 
     @property
     def has_creases(self):
@@ -249,7 +250,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
     for way in ways:
         if way in item.other_maps:
             continue
-        if exhausted(item, result):
+        if exhausted(item, result, progress):
             break
         item.other_maps.append(way)
         region = _without_creases(item, result) if way.creases_rounded else item.region
@@ -292,9 +293,11 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
     return False
 
 
-def exhausted(item, result):
+def exhausted(item, result, progress):
     """Whether fits took so much work that no other ways of fitting a region are to be tried."""
-    return result.exhausted or item.work > (MOST_WORK_BEFORE_CUT if item.cuts_left and may_cut(result) else MOST_WORK)
+    if result.exhausted or item.work > MOST_WORK:
+        return True
+    return item.work > MOST_WORK_BEFORE_CUT and has_parts(item, result, progress)
 
 
 def _without_creases(item, result):

@@ -90,8 +90,9 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
     ByteKey key = keyOf(curve.sampled.front(), curve.sides);
     key.add(tolerance_).add(reach_).add(curve.folded).add(start).add(end);
     addTo(key, curve.tangent);
+    for (const auto& side : curve.sides) key.add(side.start).add(side.end);
     edge = memory_.recall<std::optional<std::vector<TrimPiece>>>("shared edge", std::move(key), [&] {
-      return sharedEdge(*curve.intersection, piece.start == piece.end, start, end, progress_);
+      return sharedEdge(*curve.intersection, piece.start == piece.end, start, end, curve.sides, progress_);
     });
   }
   const bool loose = !edge;

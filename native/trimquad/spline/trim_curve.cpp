@@ -120,6 +120,32 @@ double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheet
   return largest;
 }
 
+/// Leads one end of a piece, in space and on both sheets, to where it is to be, unless that is far off.
+void leadToEnd(TrimPiece& piece, bool atStart, const Eigen::Vector3d& point,
+               const std::vector<SheetSide>& sides) {
+  const auto tip = [&](auto& curve) -> auto& {
+    return atStart ? curve.poles.front() : curve.poles.back();
+  };
+  const auto leg = [&](const auto& curve) {
+    const auto& p = curve.poles;
+    return atStart ? (p[1] - p[0]).norm() : (p[p.size() - 2] - p.back()).norm();
+  };
+  const auto placeOf = [&](int k) {
+    Eigen::Vector2d place = atStart ? sides[k].start : sides[k].end;
+    snapToSeam(*sides[k].sheet, place);
+    return place;
+  };
+  constexpr double near = 0.2;  // by the first leg of the poles
+  const auto isNear = [&](const auto& curve, const auto& place) {
+    return (place - (atStart ? curve.poles.front() : curve.poles.back())).norm() <= near * leg(curve);
+  };
+  if (!isNear(piece.curve, point) || !isNear(piece.onSheet[0], placeOf(0)) ||
+      !isNear(piece.onSheet[1], placeOf(1)))
+    return;
+  tip(piece.curve) = point;
+  for (const int k : {0, 1}) tip(piece.onSheet[k]) = placeOf(k);
+}
+
 /// S(x(s)) as a curve in space.
 SpaceCurve composed(const Sheet& sheet, const PlaneCurve& x, const Progress& progress) {
   const auto onSurface = [&](double s) {
@@ -361,6 +387,7 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
 
 std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& intersection, bool closed,
                                                  const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                                                 const std::vector<SheetSide>& sides,
                                                  const Progress& progress) {
   const Sheet &sheetA = intersection.a(), &sheetB = intersection.b();
   const auto& reference = intersection.reference();
@@ -405,9 +432,11 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
       for (int k : {0, 1})
         for (auto* tip : {&piece.onSheet[k].poles.front(), &piece.onSheet[k].poles.back()})
           snapToSeam(k == 0 ? sheetA : sheetB, *tip);
-      piece.gap = largestGap(piece, {&sheetA, &sheetB});
       pieces.push_back(std::move(piece));
     }
+    leadToEnd(pieces.front(), true, start, sides);
+    leadToEnd(pieces.back(), false, end, sides);
+    for (auto& piece : pieces) piece.gap = largestGap(piece, {&sheetA, &sheetB});
   } catch (const IntersectionCurve::Missing&) {
     return {};
   }

@@ -67,9 +67,12 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    const Progress& progress);
 
 /// Pieces of the intersection curve between the points nearest to `start` and `end`, cut at both sheets'
-/// seams. Null where it has a gap after all.
+/// seams. It ends in these points, and on the sheets where the sides end, unless these are too far off for
+/// its last piece to be led there: so that all edges of a sheet end in one place, which readers of STEP ask
+/// for. Null where it has a gap after all. \param sides of both sheets; only their ends count
 std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& intersection, bool closed,
                                                  const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                                                 const std::vector<SheetSide>& sides,
                                                  const Progress& progress);
 
 /// Pieces of an edge on the first side's sheet, which the second sheet only touches within the gap: for
