@@ -17,7 +17,7 @@ ENOUGH = 0.95
 MORE_POLES, FEW_POLES = 5, 1000
 # Work of a region's fits after which no other ways of fitting it are tried; less where it can be cut instead. And the same
 # for a whole model. 1e6 steps take about half a second. Work rather than time, so that results do not depend on the machine.
-MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 60e6, 20e6, 150e6
+MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 60e6, 10e6, 150e6
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.

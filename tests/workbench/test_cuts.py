@@ -145,6 +145,82 @@ def test_all_regions_that_cannot_be_trimmed_are_fitted_again_before_the_next_tri
     assert sorted(fitted_again) == [("region 2", "region 2"), ("region 4", "region 4, Edge3")]
 
 
+@pytest.fixture
+def one_region_fails(monkeypatch):
+    """The first trim of a box fails for its region 2, which no other fit helps. Returns the numbers of regions of all trims,
+    and how the next ones fail."""
+    native, trims, failures = joining.load(), [], ["region 2"]
+
+    def trim_model(model, maps, fits, *arguments):
+        trims.append(sum(f is not None for f in fits))
+        if failures:
+            raise Error("stage", "fit", "encloses nothing", failures.pop(0))
+        return native.trim_model(model, maps, fits, *arguments)
+
+    class Native:
+        def __getattr__(self, name):
+            return trim_model if name == "trim_model" else getattr(native, name)
+
+    def refit(item, charts, error, result, progress):
+        if item.name == "region 2":
+            item.fitted, item.error = None, error
+        else:
+            item.fitted = regions.fit(item, result, native.Progress())
+
+    monkeypatch.setattr(joining, "_refit", refit)
+    monkeypatch.setattr(joining, "load", Native)
+    return trims, failures
+
+
+def box_in_regions():
+    import Part
+
+    return trimquad.convert(Part.makeBox(1, 2, 3), trimquad.Options(quads=200))
+
+
+def test_before_a_region_is_left_out_those_around_it_are_fitted_more_closely(one_region_fails):
+    result = box_in_regions()
+    assert not result.failed and one_region_fails[0] == [6, 6]
+    around = [r.fitted_closer for r in result.regions]
+    assert around.count(True) == 4 and not result.regions[2].fitted_closer
+
+
+def test_a_region_that_was_left_out_is_taken_back_once_those_around_are_others(one_region_fails, monkeypatch):
+    trims, failures = one_region_fails
+    monkeypatch.setattr(joining, "_fit_closer", lambda *_: False)
+    assert [r.name for r in box_in_regions().failed] == ["region 2"] and trims == [6, 5]
+    # Opposite faces have numbers that differ by one: 0 and 1, 2 and 3, 4 and 5.
+    for other, last in (("region 4", [6, 5, 5, 6]), ("region 3", [6, 5, 5])):
+        trims.clear()
+        failures.extend(["region 2", other])
+        assert [r.name for r in box_in_regions().failed] == (["region 2"] if other == "region 3" else [])
+        assert trims == last
+
+
+def test_fits_end_with_a_measure_of_work(monkeypatch):
+    calls = []
+
+    def fails(item, result, progress, *rest, **ways):
+        calls.append(item.name)
+        item.work += 100
+        raise Error("stage", "fit", "refused", item.name)
+
+    monkeypatch.setattr(regions, "fit", fails)
+    import FreeCAD
+    import Part
+
+    sphere = Part.makeSphere(10, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), -45, 90, 360)
+    cap = max(sphere.Faces, key=lambda face: face.Area)
+    tries = []
+    for most in (1e6, 50):
+        monkeypatch.setattr(regions, "MOST_WORK", most)
+        calls.clear()
+        (failed,) = trimquad.convert(cap, trimquad.Options(quads=300)).failed
+        assert str(failed.error).startswith("refused")
+        tries.append(len(calls))
+    assert tries[1] < tries[0]
+
+
 def leading_edge(radius):
     """Upper and lower side of a leading edge, 1 deep and 2 long: a shell of two faces."""
     import FreeCAD

@@ -55,6 +55,24 @@ TEST(TrimCurve, IsLedToACornerThatLiesOffItsEndInBothDirections) {
   }
 }
 
+TEST(TrimCurve, LooksForFeetWhereTheCurveIsNotWhereItIsLedTo) {
+  const auto wave = [](double u, double v) { return Eigen::Vector3d(u, v, 0.6 * std::sin(3 * u)); };
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i <= 20; ++i) points.push_back(wave(0.3 * i, 0));
+  CurveOnSheet c(interpolated(wave, -3, 9, 120, -1, 1, 4), points);
+  for (const auto& p : points) c.run.uv.push_back(p.head<2>());
+  auto side = c.side();
+  const auto sampled = sampleCurve(c.curve, {side}, 1);
+  side.end += Eigen::Vector2d(1.4, 0);  // over most of a wave
+  const auto pieces = freeEdge(sampled, side, {0.05, 0.2}, {});
+  ASSERT_EQ(pieces.size(), 1u);
+  const PlaneCurve& x = pieces[0].onSheet[0];
+  EXPECT_LT((x.poles.back() - side.end).norm(), 1e-12);
+  for (double s = x.first(); s < x.last(); s += 0.01) {
+    EXPECT_GT(x.derivatives(s, 1)[1][0], 0) << s;
+  }
+}
+
 TEST(TrimCurve, FollowsTheNearestFeetWhereTheMapIsFarFromThem) {
   const auto wave = [](double u, double v) { return Eigen::Vector3d(u, v, 0.6 * std::sin(3 * u)); };
   const auto surface = interpolated(wave, -3, 9, 120, -1, 1, 4);

@@ -22,7 +22,16 @@ void expectExact(const SplineModel& model) {
   EXPECT_LE(gaps.edgeTolerance, 1e-7);
   EXPECT_LE(gaps.vertexTolerance, 1e-7);
   EXPECT_EQ(model.looseEdges, 0);
-  for (const auto& face : model.faces) EXPECT_FALSE(loopCrossing(face));
+  for (const auto& face : model.faces) {
+    EXPECT_FALSE(loopCrossing(face));
+    for (const auto& loop : face.loops)
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        const auto &coedge = loop[k], &next = loop[(k + 1) % loop.size()];
+        const auto end = coedge.forward ? coedge.curve.poles.back() : coedge.curve.poles.front();
+        const auto start = next.forward ? next.curve.poles.front() : next.curve.poles.back();
+        EXPECT_LE((end - start).norm(), 1e-9) << "edges of a loop end apart";
+      }
+  }
   for (const auto& edge : model.edges) {
     EXPECT_NE(edge.start, edge.end);
     for (std::size_t i = edge.curve.degree + 1; i + edge.curve.degree + 1 < edge.curve.knots.size(); ++i)
