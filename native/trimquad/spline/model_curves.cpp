@@ -108,6 +108,7 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
       return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
     });
   }
+  for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance);
   result.push_back({std::move(*edge), {&a, &b}, loose});
   return result;
 }

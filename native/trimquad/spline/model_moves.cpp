@@ -134,7 +134,8 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
       for (const bool atStart : {true, false}) {
         const auto corner = corners.find(cornerOf(atStart ? run.start : run.end));
         if (corner == corners.end()) continue;
-        corner->second.point = atStart ? sampled.point.front() : sampled.point.back();
+        corner->second.point =
+            pointOfCorner(corner->first, atStart ? sampled.point.front() : sampled.point.back());
         corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back()});
       }
     }
@@ -173,11 +174,14 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
   };
   for (const auto& [id, gap] : gaps) {
     const auto& curve = curves_.at(id);
+    const std::array<int, 2> corners{cornerOf(curve.sides[0].run->start), cornerOf(curve.sides[0].run->end)};
     tangent.push_back({&curve.sampled[0],
                        {sideOf(curve.sides[0]), sideOf(curve.sides[1])},
                        !curvePieces_->isPolyline(id),
                        gap,
-                       {cornerOf(curve.sides[0].run->start), cornerOf(curve.sides[0].run->end)}});
+                       corners,
+                       {pointOfCorner(corners[0], curve.sampled[0].point.front()),
+                        pointOfCorner(corners[1], curve.sampled[0].point.back())}});
   }
   const auto joined = joinTangentSheets(
       sheets_, tangent, tangentCorners(), mayMove(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -132,6 +133,10 @@ class ModelTrimmer {
     return int(found - uses_.begin());
   }
   int cornerOf(const RunEnd& end) const { return corners_[end.corner]; }
+  /// \param otherwise for corners that are not the model's
+  Eigen::Vector3d pointOfCorner(int corner, const Eigen::Vector3d& otherwise) const {
+    return corner < int(model_.corners.size()) ? model_.corners[corner] : otherwise;
+  }
   int groupOf(const BoundaryRun& run, const RunEnd& end) const { return uses_[cornerUse(run, end)].group; }
 
   void placeCorners();

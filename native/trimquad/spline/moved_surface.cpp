@@ -19,7 +19,8 @@ constexpr double kTakesPart = 0.3;
 /// What may be left of the moves where they cannot be followed, by the largest; and by how much less there
 /// has to be for more poles.
 constexpr double kWorthWhile = 0.1, kWorthMorePoles = 0.7;
-constexpr double kNarrowest = 1.0 / 32;  ///< quads; narrower ones follow wrinkles only
+/// By how much the weight of what is missed grows in a round, and in all. (after Lawson's algorithm)
+constexpr double kMoreAtOnce = 10, kMostMore = 1e4;
 
 /// Empty where inner knots are multiple.
 std::optional<SplineLine> lineOf(const std::vector<double>& knots, int degree, bool closed) {
@@ -48,8 +49,7 @@ void halve(SplineLine& line, std::vector<int> spans) {
   std::sort(spans.begin(), spans.end());
   spans.erase(std::unique(spans.begin(), spans.end()), spans.end());
   for (auto it = spans.rbegin(); it != spans.rend(); ++it)
-    if (line.width(*it) >= 2 * kNarrowest)
-      line.breaks.insert(line.breaks.begin() + *it + 1, (line.breaks[*it] + line.breaks[*it + 1]) / 2);
+    line.breaks.insert(line.breaks.begin() + *it + 1, (line.breaks[*it] + line.breaks[*it + 1]) / 2);
 }
 
 /// More knots where the move is missed, in the directions that the curves have there. Whether there are any.
@@ -57,8 +57,12 @@ bool refine(SplineSpace& space, const std::vector<SurfaceMove>& missed) {
   std::vector<int> spans[2];
   for (const auto& move : missed) {
     const Eigen::Vector2d share = move.along.cwiseAbs();
-    if (share[0] >= kTakesPart * share[1]) spans[0].push_back(space.u.spanOf(move.at[0]));
-    if (share[1] >= kTakesPart * share[0]) spans[1].push_back(space.v.spanOf(move.at[1]));
+    const SplineLine* lines[] = {&space.u, &space.v};
+    for (const int axis : {0, 1}) {
+      const int span = lines[axis]->spanOf(move.at[axis]);
+      if (share[axis] >= kTakesPart * share[1 - axis] && lines[axis]->width(span) >= 2 * move.narrowest)
+        spans[axis].push_back(span);
+    }
   }
   const int before = space.poles();
   halve(space.u, spans[0]);
@@ -93,20 +97,24 @@ std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const st
   for (const auto& move : moves) left = std::max(left, move.by.norm() / move.error);
   left *= kWorthWhile;
   std::optional<SplineSurface> best;
+  std::vector<double> more(moves.size(), 1);  // by move: its weight, by that given
   for (int round = 0; round < kMaxRounds && space.poles() <= maxPoles; ++round) {
     std::vector<Datum> data;
-    for (const auto& move : moves)
-      data.push_back({{surface.wrappedU(move.at[0]), move.at[1]}, move.by, move.weight});
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      data.push_back(
+          {{surface.wrappedU(moves[i].at[0]), moves[i].at[1]}, moves[i].by, more[i] * moves[i].weight});
     appendBed(space, fade, data);
     auto way = space.leastSquares(data, plate, progress);
     if (!way) break;
     std::vector<SurfaceMove> missed;
     double worst = 0;
-    for (SurfaceMove move : moves) {
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      SurfaceMove move = moves[i];
       move.at[0] = surface.wrappedU(move.at[0]);
       const double off = (way->point(move.at[0], move.at[1]) - move.by).norm() / move.error;
       if (off <= 1) continue;
       worst = std::max(worst, off);
+      more[i] = std::min(more[i] * std::min(off, kMoreAtOnce), kMostMore);
       missed.push_back(move);
     }
     if (missed.empty()) return sum(surface, *way);

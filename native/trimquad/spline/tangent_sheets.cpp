@@ -25,6 +25,8 @@ constexpr double kSharp = 0.1;
 constexpr double kStrip = 1.0 / 32;
 /// Weight of places on a curve against slopes there.
 constexpr double kPlaceWeight = 1000;
+/// Narrowest knot spans where sheets make no edge, quads.
+constexpr double kNarrowest = 1.0 / 64;
 /// What of a fold's angle may be missed; up to which angle sheets are turned back to make it.
 constexpr double kFoldMissed = 0.001, kFlattened = 0.02;
 /// How much longer than nothing the sum of two curves' unit directions out of a corner is from which on both
@@ -139,13 +141,33 @@ enum class Turning {
   None       ///< they stay parallel to what they were
 };
 
+/// What leads a curve's samples to the corners, over this part of its length at both ends.
+class LedToCorners {
+ public:
+  explicit LedToCorners(const TangentCurve& curve)
+      : s_(curve.sampled->s),
+        start_(curve.ends[0] - curve.sampled->point.front()),
+        end_(curve.ends[1] - curve.sampled->point.back()) {}
+  Eigen::Vector3d operator()(std::size_t i) const {
+    const double part = 1.0 / 8 * (s_.back() - s_.front());
+    return (1 - smoothStep((s_[i] - s_.front()) / part)) * start_ +
+           (1 - smoothStep((s_.back() - s_[i]) / part)) * end_;
+  }
+
+ private:
+  const std::vector<double>& s_;
+  Eigen::Vector3d start_, end_;
+};
+
 /// Moves onto the curve.
-void appendMovesToCurve(const StripMoves& strip, const FoldPlan& plan, int side, bool onLeft, Turning turning,
-                        const JoinLimits& limits, double gap, std::vector<SurfaceMove>& moves) {
+/// \param lead added to the curve's samples
+void appendMovesToCurve(const StripMoves& strip, const LedToCorners& lead, const FoldPlan& plan, int side,
+                        bool onLeft, Turning turning, const JoinLimits& limits, double gap,
+                        std::vector<SurfaceMove>& moves) {
   constexpr double share = 0.5;  // of the turning that is this sheet's
   for (std::size_t i = 0; i < strip.samples(); ++i) {
     const double error = plan.near[i] ? std::min(gap / 2, limits.tangentError) : gap / 2;
-    if (!strip.append(i, strip.point(i), error, {}, moves)) continue;
+    if (!strip.append(i, strip.point(i) + lead(i), error, {}, moves)) continue;
     const std::size_t placed = moves.size() - 1;
     if (!plan.given[side][i]) {
       const double angle = plan.kind[i] * plan.angle[i];
@@ -155,7 +177,10 @@ void appendMovesToCurve(const StripMoves& strip, const FoldPlan& plan, int side,
         turn *= turning == Turning::ToFold ? 1 - smoothStep((angle - kFlattened) / (kKept - kFlattened)) : 0;
       strip.setSlope((onLeft ? -share : share) * plan.kind[i] * turn, turns ? kFoldMissed : HUGE_VAL, moves);
     }
-    if (plan.near[i]) moves[placed].weight *= kPlaceWeight;
+    if (plan.near[i]) {
+      moves[placed].weight *= kPlaceWeight;
+      moves[placed].narrowest = kNarrowest;
+    }
   }
 }
 
@@ -312,8 +337,8 @@ class SheetJoiner {
         appendMovesOnto(strip, sheets_[otherSheet(s)], curve.sampled->foot[1 - s.side], limits_.width,
                         curve.gap, moves);
       } else if (movesToCurve(k, s)) {
-        appendMovesToCurve(strip, plans_[s.curve], s.side, curve.sides[s.side].onLeft, turning, limits_,
-                           curve.gap, moves);
+        appendMovesToCurve(strip, LedToCorners(curve), plans_[s.curve], s.side, curve.sides[s.side].onLeft,
+                           turning, limits_, curve.gap, moves);
       }
     }
     for (const auto& corner : corners_)

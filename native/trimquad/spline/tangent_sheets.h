@@ -19,9 +19,10 @@ struct TangentCurve {
   };
   const SampledCurve* sampled;
   std::array<Side, 2> sides;
-  bool smooth;                 ///< whether the curve is the model's own, no chain of mesh edges
-  double gap;                  ///< what may be left between the sheets, model units
-  std::array<int, 2> corners;  ///< of the model, at its start and end
+  bool smooth;                          ///< whether the curve is the model's own, no chain of mesh edges
+  double gap;                           ///< what may be left between the sheets, model units
+  std::array<int, 2> corners;           ///< of the model, at its start and end
+  std::array<Eigen::Vector3d, 2> ends;  ///< where these are: models have curves that end a little off them
 };
 
 /// Largest gap that two sheets have after one has moved onto the other, by the model's diagonal.

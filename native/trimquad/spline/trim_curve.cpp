@@ -293,6 +293,23 @@ std::vector<Eigen::Vector2d> feetOn(const SheetSide& side, const SampledCurve& s
   return feet;
 }
 
+/// More and more samples towards both ends of a curve, where its sheets may be tangent on a short stretch
+/// only.
+void refineEnds(std::vector<double>& t) {
+  constexpr std::size_t kIntervals = 4, kMore = 24;
+  constexpr double kRatio = 0.8;
+  if (t.size() <= 2 * kIntervals) return;
+  std::vector<double> more;
+  for (const auto& [end, from] :
+       {std::pair(t.front(), t[kIntervals]), {t.back(), t[t.size() - 1 - kIntervals]}}) {
+    double part = 1;
+    for (std::size_t k = 0; k < kMore; ++k) more.push_back(end + (part *= kRatio) * (from - end));
+  }
+  t.insert(t.end(), more.begin(), more.end());
+  std::sort(t.begin(), t.end());
+  t.erase(std::unique(t.begin(), t.end()), t.end());
+}
+
 }  // namespace
 
 double SampledCurve::lengthAt(double at) const {
@@ -315,6 +332,7 @@ SampledCurve sampleCurve(const ModelCurve& curve, const std::vector<SheetSide>& 
     for (int k = 0; k < perPiece; ++k)
       sampled.t.push_back(stations[i] + (stations[i + 1] - stations[i]) * k / perPiece);
   sampled.t.push_back(stations.back());
+  if (sides.size() == 2) refineEnds(sampled.t);
   for (const double t : sampled.t) {
     const Eigen::Vector3d p = curve.curve->point(t);
     const double s = sampled.s.empty() ? 0 : sampled.s.back() + (p - sampled.point.back()).norm();
@@ -441,6 +459,16 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
     return {};
   }
   return pieces;
+}
+
+void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact) {
+  if (!(piece.gap > exact && piece.gap < 5 * exact)) return;
+  const auto jet = sides[0].sheet->jet(piece.onSheet[0].poles.front());
+  const Eigen::Vector3d along = piece.curve.derivatives(piece.curve.first(), 1)[1];
+  piece.curve.poles.front() += 2 * piece.gap * normal(jet).cross(along).normalized();
+  std::vector<const Sheet*> sheets;
+  for (const auto& side : sides) sheets.push_back(side.sheet);
+  piece.gap = largestGap(piece, sheets);
 }
 
 std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<SheetSide>& sides,
