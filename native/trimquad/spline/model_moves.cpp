@@ -148,7 +148,8 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
 }
 
 /// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
-/// Where the surfaces bend sharply, a fold says where their intersection is only if they agree more closely.
+/// Where sheets have no intersection then, they agree more closely, since where they bend sharply a fold says
+/// where it is only so, and stay tangent around the corners there.
 void ModelTrimmer::joinTangent() {
   std::map<int, double> gaps;
   for (const auto& [id, curve] : curves_)
@@ -156,32 +157,40 @@ void ModelTrimmer::joinTangent() {
   const auto curves = curves_;
   const auto fitted = sheets_;
   const auto moved = moved_;
-  const auto lost = joinTangent(gaps);
-  if (lost.empty()) return;
-  for (const int id : lost) gaps[id] *= kFinerGap;
+  const auto apart = joinTangent(gaps, {});
+  if (apart.empty()) return;
+  std::set<int> corners;
+  for (const int id : apart) {
+    const CurveWithSides& curve = curves_.at(id);
+    if (curve.folded) gaps[id] *= kFinerGap;
+    for (const RunEnd& end : {curve.sides[0].run->start, curve.sides[0].run->end})
+      corners.insert(cornerOf(end));
+  }
   curves_ = curves;
   sheets_ = fitted;
   moved_ = moved;
-  joinTangent(gaps);
+  joinTangent(gaps, corners);
 }
 
-/// \param gaps by curve along which sheets touch: what may be left between them there, model units
-/// Returns the curves of folds that are not found.
-std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
+/// \param gaps    by curve along which sheets touch: what may be left between them there, model units
+/// \param corners around which sheets stay tangent where curves fix their tangent planes
+/// Returns the curves that sheets were to be folded along but have no intersection.
+std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps, const std::set<int>& corners) {
   std::vector<TangentCurve> tangent;
   const auto sideOf = [&](const SheetSide& side) {
     return TangentCurve::Side{sheetOf(*side.run), side.run->forward};
   };
   for (const auto& [id, gap] : gaps) {
     const auto& curve = curves_.at(id);
-    const std::array<int, 2> corners{cornerOf(curve.sides[0].run->start), cornerOf(curve.sides[0].run->end)};
+    const std::array<int, 2> ends{cornerOf(curve.sides[0].run->start), cornerOf(curve.sides[0].run->end)};
     tangent.push_back({&curve.sampled[0],
                        {sideOf(curve.sides[0]), sideOf(curve.sides[1])},
                        !curvePieces_->isPolyline(id),
                        gap,
-                       corners,
-                       {pointOfCorner(corners[0], curve.sampled[0].point.front()),
-                        pointOfCorner(corners[1], curve.sampled[0].point.back())}});
+                       ends,
+                       {pointOfCorner(ends[0], curve.sampled[0].point.front()),
+                        pointOfCorner(ends[1], curve.sampled[0].point.back())},
+                       {corners.count(ends[0]) > 0, corners.count(ends[1]) > 0}});
   }
   const auto joined = joinTangentSheets(
       sheets_, tangent, tangentCorners(), mayMove(),
@@ -201,10 +210,14 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps) {
     sample(id, curve);
     if (curve.intersection || curve.folded) intersect(curve);
   });
-  std::vector<int> lost;
-  for (const auto& [id, curve] : curves_)
-    if (curve.folded && !curve.intersection) lost.push_back(id);
-  return lost;
+  const auto movable = mayMove();
+  std::vector<int> apart;
+  for (const auto& [id, gap] : gaps) {
+    const CurveWithSides& curve = curves_.at(id);
+    const bool both = movable[sheetOf(*curve.sides[0].run)] && movable[sheetOf(*curve.sides[1].run)];
+    if (both && !curvePieces_->isPolyline(id) && !curve.intersection) apart.push_back(id);
+  }
+  return apart;
 }
 
 }  // namespace trimquad

@@ -110,7 +110,7 @@ class ModelTrimmer {
   SheetMover mover() const;
   void meetInCorners();
   void joinTangent();
-  std::vector<int> joinTangent(const std::map<int, double>& gaps);
+  std::vector<int> joinTangent(const std::map<int, double>& gaps, const std::set<int>& corners);
 
   void placeSeams() {
     for (int k = 0; k < int(sheets_.size()); ++k) {

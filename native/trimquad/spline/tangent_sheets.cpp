@@ -305,7 +305,8 @@ class SheetJoiner {
         for (const int otherEnd : {0, 1}) {
           if (other.curve == c && otherEnd == end) continue;
           if (curves_[other.curve].corners[otherEnd] != curves_[c].corners[end]) continue;
-          fixed[end] |= (wayOut(c, end) + wayOut(other.curve, otherEnd)).norm() > kBends;
+          fixed[end] |=
+              curves_[c].tangent[end] && (wayOut(c, end) + wayOut(other.curve, otherEnd)).norm() > kBends;
         }
     return fixed;
   }

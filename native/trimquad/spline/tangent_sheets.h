@@ -23,6 +23,8 @@ struct TangentCurve {
   double gap;                           ///< what may be left between the sheets, model units
   std::array<int, 2> corners;           ///< of the model, at its start and end
   std::array<Eigen::Vector3d, 2> ends;  ///< where these are: models have curves that end a little off them
+  std::array<bool, 2>
+      tangent;  ///< whether the sheets stay tangent around these, if curves fix their planes there
 };
 
 /// Largest gap that two sheets have after one has moved onto the other, by the model's diagonal.
@@ -45,8 +47,8 @@ struct JoinLimits {
 /// a strip around, and in the corners in which such curves end. Where both may move and the curve is smooth,
 /// both come to lie on it, and are turned about it until they make an edge of a fraction of a degree (a
 /// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, or the
-/// one that may. Around corners in which several such curves fix a sheet's tangent plane, and where an edge
-/// changes from a ridge to a valley, the sheets stay tangent. \param mayMove by sheet
+/// one that may. Around corners that say so, in which several such curves fix a sheet's tangent plane, and
+/// where an edge changes from a ridge to a valley, the sheets stay tangent. \param mayMove by sheet
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
                                const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
                                const JoinLimits& limits, int threads, const SheetMover& mover);
