@@ -19,7 +19,10 @@ constexpr double kTakesPart = 0.3;
 /// What may be left of the moves where they cannot be followed, by the largest; and by how much less there
 /// has to be for more poles.
 constexpr double kWorthWhile = 0.1, kWorthMorePoles = 0.7;
-/// By how much the weight of what is missed grows in a round, and in all. (after Lawson's algorithm)
+/// Narrowest knot spans, quads: narrower ones follow wrinkles only.
+constexpr double kNarrowest = 1.0 / 32, kNarrowestFirm = 1.0 / 64;
+/// By how much the weight of a firm move that is missed grows in a round, and in all. (after Lawson's
+/// algorithm)
 constexpr double kMoreAtOnce = 10, kMostMore = 1e4;
 
 /// Empty where inner knots are multiple.
@@ -60,7 +63,8 @@ bool refine(SplineSpace& space, const std::vector<SurfaceMove>& missed) {
     const SplineLine* lines[] = {&space.u, &space.v};
     for (const int axis : {0, 1}) {
       const int span = lines[axis]->spanOf(move.at[axis]);
-      if (share[axis] >= kTakesPart * share[1 - axis] && lines[axis]->width(span) >= 2 * move.narrowest)
+      if (share[axis] >= kTakesPart * share[1 - axis] &&
+          lines[axis]->width(span) >= 2 * (move.firm ? kNarrowestFirm : kNarrowest))
         spans[axis].push_back(span);
     }
   }
@@ -114,7 +118,7 @@ std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const st
       const double off = (way->point(move.at[0], move.at[1]) - move.by).norm() / move.error;
       if (off <= 1) continue;
       worst = std::max(worst, off);
-      more[i] = std::min(more[i] * std::min(off, kMoreAtOnce), kMostMore);
+      if (move.firm) more[i] = std::min(more[i] * std::min(off, kMoreAtOnce), kMostMore);
       missed.push_back(move);
     }
     if (missed.empty()) return sum(surface, *way);

@@ -25,8 +25,6 @@ constexpr double kSharp = 0.1;
 constexpr double kStrip = 1.0 / 32;
 /// Weight of places on a curve against slopes there.
 constexpr double kPlaceWeight = 1000;
-/// Narrowest knot spans where sheets make no edge, quads.
-constexpr double kNarrowest = 1.0 / 64;
 /// What of a fold's angle may be missed; up to which angle sheets are turned back to make it.
 constexpr double kFoldMissed = 0.001, kFlattened = 0.02;
 /// How much longer than nothing the sum of two curves' unit directions out of a corner is from which on both
@@ -179,7 +177,7 @@ void appendMovesToCurve(const StripMoves& strip, const LedToCorners& lead, const
     }
     if (plan.near[i]) {
       moves[placed].weight *= kPlaceWeight;
-      moves[placed].narrowest = kNarrowest;
+      moves[placed].firm = true;
     }
   }
 }
