@@ -112,6 +112,9 @@ FoldPlan planFold(const SampledCurve& sampled, const std::array<const Sheet*, 2>
       merged.push_back(range);
   }
   const auto chordLengthAt = [&](double quads) {
+    const double beyond = (sampled.s.back() - sampled.s.front()) / length;
+    if (quads <= 0) return sampled.s.front() + beyond * quads;
+    if (quads >= length) return sampled.s.back() + beyond * (quads - length);
     const auto next =
         std::clamp(std::lower_bound(along.begin(), along.end(), quads), along.begin() + 1, along.end() - 1);
     const std::size_t i = next - along.begin() - 1;

@@ -51,6 +51,9 @@ IntersectionCurve::IntersectionCurve(const Sheet& a, const Sheet& b, SpaceCurve 
       };
       slope[k] = rise(a_->jet(at.head<2>())) - rise(b_->jet(at.tail<2>()));
     }
+    // Of what lies beyond the curve only the other side counts.
+    if (ends[0] < guesses_.front().s) slope[0] = slope[1];
+    if (ends[1] > guesses_.back().s) slope[1] = slope[0];
     stretches_.push_back({stretch, n, slope});
     tangentEnds_.insert(tangentEnds_.end(), {ends[0], stretch.first, stretch.last, ends[1]});
   }

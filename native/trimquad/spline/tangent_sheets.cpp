@@ -251,7 +251,7 @@ class SheetJoiner {
                  [&](int i) { states[independent[i]] = moved(independent[i]); });
     states_ = std::move(states);
     for (int k = 0; k < int(sheets_.size()); ++k)
-      if (mayMove_[k] && !movesOntoCurvesOnly(k)) states_[k] = moved(k);
+      if (mayMove_[k] && !sides_[k].empty() && !movesOntoCurvesOnly(k)) states_[k] = moved(k);
     // Those that touch sheets which did not reach their curves follow these.
     for (int k = 0; k < int(sheets_.size()); ++k)
       if (mayMove_[k] && std::any_of(sides_[k].begin(), sides_[k].end(),
