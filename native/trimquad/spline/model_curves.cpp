@@ -97,16 +97,25 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
   }
   const bool loose = !edge;
   if (loose) {
-    double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
-    // Sheets that agree do so on the curve itself.
-    if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal)
-      near = std::min(near, kTangentGap * model_.diagonal);
-    ByteKey key = keyOf(curve.sampled.front(), curve.sides);
-    for (const auto& side : curve.sides) key.add(side.start).add(side.end);
-    key.add(near);
-    edge = memory_.recall<std::vector<TrimPiece>>("loose edge", std::move(key), [&] {
-      return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
-    });
+    const auto within = [&](double near) {
+      ByteKey key = keyOf(curve.sampled.front(), curve.sides);
+      for (const auto& side : curve.sides) key.add(side.start).add(side.end);
+      key.add(near);
+      return memory_.recall<std::vector<TrimPiece>>("loose edge", std::move(key), [&] {
+        return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
+      });
+    };
+    const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
+    const double nearer = std::min(near, kTangentGap * model_.diagonal);
+    // Sheets that agree do so on the curve itself; where it cannot be followed so closely, not as well.
+    if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal) {
+      try {
+        edge = within(nearer);
+      } catch (const Error& error) {
+        if (error.kind() != Error::Kind::Stage) throw;
+      }
+    }
+    if (!edge) edge = within(near);
   }
   for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance);
   result.push_back({std::move(*edge), {&a, &b}, loose});
