@@ -1,7 +1,6 @@
 #include "trimquad/spline/fold_plan.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -61,11 +60,8 @@ std::vector<double> kinds(const std::vector<double>& angle) {
 std::vector<double> quadsAlong(const SampledCurve& sampled, const Sheet& sheet) {
   std::vector<double> result{0};
   for (std::size_t i = 0; i + 1 < sampled.s.size(); ++i) {
-    const auto jet = sheet.jet(sampled.foot[0][i]);
-    Eigen::Matrix<double, 3, 2> m;
-    m << jet.su, jet.sv;
     const Eigen::Vector3d way = sampled.point[i + 1] - sampled.point[i];
-    result.push_back(result.back() + m.colPivHouseholderQr().solve(way).norm());
+    result.push_back(result.back() + inPlane(sheet.jet(sampled.foot[0][i]), way).norm());
   }
   return result;
 }

@@ -1,6 +1,7 @@
 #include "trimquad/spline/sheet.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,12 @@ std::vector<double> Sheet::knotLines(int axis, double low, double high) const {
 
 Eigen::Vector3d normal(const SplineSurface::Jet& jet) {
   return jet.su.cross(jet.sv).normalized();
+}
+
+Eigen::Vector2d inPlane(const SplineSurface::Jet& jet, const Eigen::Vector3d& way) {
+  Eigen::Matrix<double, 3, 2> m;
+  m << jet.su, jet.sv;
+  return m.colPivHouseholderQr().solve(way);
 }
 
 SplineSurface withSeamAt(const SplineSurface& closed, double u) {

@@ -31,6 +31,9 @@ struct Sheet {
 /// The unit normal, on the side of su x sv.
 Eigen::Vector3d normal(const SplineSurface::Jet& jet);
 
+/// The way in the parameter plane that goes nearest to `way` on the surface.
+Eigen::Vector2d inPlane(const SplineSurface::Jet& jet, const Eigen::Vector3d& way);
+
 /// The same closed surface with its seam at `u` instead; exact. (knots inserted at the new seam, removed at
 /// the old one, where the surface is C^(degree-1))
 SplineSurface withSeamAt(const SplineSurface& closed, double u);

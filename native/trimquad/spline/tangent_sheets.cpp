@@ -1,7 +1,6 @@
 #include "trimquad/spline/tangent_sheets.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,13 +34,6 @@ constexpr double kFade = 1, kFadeFromCurve = 0.125;
 /// How far the strip goes on beyond the curve's ends, where the model's corners may lie off them: by its
 /// width.
 constexpr double kBeyondEnds[] = {1, 2, 4};
-
-/// The way in the parameter plane that goes nearest to `way` on the surface.
-Eigen::Vector2d inPlane(const SplineSurface::Jet& jet, const Eigen::Vector3d& way) {
-  Eigen::Matrix<double, 3, 2> m;
-  m << jet.su, jet.sv;
-  return m.colPivHouseholderQr().solve(way);
-}
 
 bool within(const Sheet& sheet, const Eigen::Vector2d& x) {
   const auto& s = sheet.surface;

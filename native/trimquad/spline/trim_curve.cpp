@@ -130,20 +130,20 @@ void leadToEnd(TrimPiece& piece, bool atStart, const Eigen::Vector3d& point,
     const auto& p = curve.poles;
     return atStart ? (p[1] - p[0]).norm() : (p[p.size() - 2] - p.back()).norm();
   };
-  const auto placeOf = [&](int k) {
-    Eigen::Vector2d place = atStart ? sides[k].start : sides[k].end;
-    snapToSeam(*sides[k].sheet, place);
-    return place;
-  };
   constexpr double near = 0.2;  // by the first leg of the poles
-  const auto isNear = [&](const auto& curve, const auto& place) {
-    return (place - (atStart ? curve.poles.front() : curve.poles.back())).norm() <= near * leg(curve);
+  const auto isNear = [&](auto& curve, const auto& place) {
+    return (place - tip(curve)).norm() <= near * leg(curve);
   };
-  if (!isNear(piece.curve, point) || !isNear(piece.onSheet[0], placeOf(0)) ||
-      !isNear(piece.onSheet[1], placeOf(1)))
-    return;
+  Eigen::Vector2d place[2];
+  bool allNear = isNear(piece.curve, point);
+  for (const int k : {0, 1}) {
+    place[k] = atStart ? sides[k].start : sides[k].end;
+    snapToSeam(*sides[k].sheet, place[k]);
+    allNear = allNear && isNear(piece.onSheet[k], place[k]);
+  }
+  if (!allNear) return;
   tip(piece.curve) = point;
-  for (const int k : {0, 1}) tip(piece.onSheet[k]) = placeOf(k);
+  for (const int k : {0, 1}) tip(piece.onSheet[k]) = place[k];
 }
 
 /// S(x(s)) as a curve in space.
