@@ -117,7 +117,7 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
     }
     if (!edge) edge = within(near);
   }
-  for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance);
+  for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance, kLooseGap * model_.diagonal);
   result.push_back({std::move(*edge), {&a, &b}, loose});
   return result;
 }

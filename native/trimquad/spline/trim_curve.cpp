@@ -14,6 +14,8 @@ namespace {
 constexpr double kPullLength = 20;
 constexpr int kGapSamples = 1000, kGapSamplesPerPole = 4, kGoldenSections = 20;
 constexpr double kNearlyLargest = 0.7;
+constexpr double kExposedGap = 1.25, kExposedFall = 0.999;
+constexpr int kExposingSpans = 20, kExposingSamples = 64;
 
 Eigen::Matrix<double, 3, 2> metric(const Sheet& sheet, const Eigen::Vector2d& x) {
   const auto jet = sheet.jet(x);
@@ -73,16 +75,18 @@ void snapToSeam(const Sheet& sheet, Eigen::Vector2d& end) {
   if (std::abs(end[0] - seam) < rounding) end[0] = seam;
 }
 
-/// The largest distance of a piece's curve from its images on the sheets: of many samples, and around the
-/// largest of these of what golden sections find.
+/// The largest distance of a piece's curve from its images on the sheets at a place.
+double gapAt(const TrimPiece& piece, const std::vector<const Sheet*>& sheets, double s) {
+  const Eigen::Vector3d p = piece.curve.point(s);
+  double gap = 0;
+  for (std::size_t k = 0; k < sheets.size(); ++k)
+    gap = std::max(gap, (sheets[k]->jet(piece.onSheet[k].point(s)).s - p).norm());
+  return gap;
+}
+
+/// The largest of these distances: of many samples, and around the largest of these of what golden sections
+/// find.
 double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheets) {
-  const auto gapAt = [&](double s) {
-    const Eigen::Vector3d p = piece.curve.point(s);
-    double gap = 0;
-    for (std::size_t k = 0; k < sheets.size(); ++k)
-      gap = std::max(gap, (sheets[k]->jet(piece.onSheet[k].point(s)).s - p).norm());
-    return gap;
-  };
   const double a = piece.curve.first(), b = piece.curve.last();
   std::vector<double> places{b};
   for (int i = 0; i < kGapSamples; ++i) places.push_back(a + (b - a) * i / kGapSamples);
@@ -97,7 +101,7 @@ double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheet
   // Curves that were made together have the same knots.
   places.erase(std::unique(places.begin(), places.end()), places.end());
   std::vector<double> gaps;
-  for (const double s : places) gaps.push_back(gapAt(s));
+  for (const double s : places) gaps.push_back(gapAt(piece, sheets, s));
   const double sampled = *std::max_element(gaps.begin(), gaps.end());
   double largest = sampled;
   for (std::size_t i = 1; i + 1 < gaps.size(); ++i)
@@ -106,7 +110,8 @@ double largestGap(const TrimPiece& piece, const std::vector<const Sheet*>& sheet
       double low = places[i - 1], middle = places[i], high = places[i + 1], best = gaps[i];
       for (int step = 0; step < kGoldenSections; ++step) {
         const bool above = high - middle > middle - low;
-        const double s = middle + part * (above ? high - middle : low - middle), gap = gapAt(s);
+        const double s = middle + part * (above ? high - middle : low - middle),
+                     gap = gapAt(piece, sheets, s);
         if (gap > best) {
           (above ? low : high) = middle;
           middle = s;
@@ -461,14 +466,32 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
   return pieces;
 }
 
-void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact) {
-  if (!(piece.gap > exact && piece.gap < 5 * exact)) return;
+void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact, double most) {
+  if (!(piece.gap > exact && piece.gap < most)) return;
   const auto jet = sides[0].sheet->jet(piece.onSheet[0].poles.front());
-  const Eigen::Vector3d along = piece.curve.derivatives(piece.curve.first(), 1)[1];
-  piece.curve.poles.front() += 2 * piece.gap * normal(jet).cross(along).normalized();
+  const double first = piece.curve.first();
+  const Eigen::Vector3d along = piece.curve.derivatives(first, 1)[1];
+  const Eigen::Vector3d aside = kExposedGap * piece.gap * normal(jet).cross(along).normalized();
   std::vector<const Sheet*> sheets;
   for (const auto& side : sides) sheets.push_back(side.sheet);
-  piece.gap = largestGap(piece, sheets);
+  const auto isFarthest = [&](const TrimPiece& moved, double span) {
+    const double atStart = gapAt(moved, sheets, first);
+    for (int i = 1; i <= kExposingSamples; ++i)
+      if (gapAt(moved, sheets, first + span * i / kExposingSamples) > kExposedFall * atStart) return false;
+    return moved.gap <= atStart;
+  };
+  // The first pole is felt on the curve's first span; on a long one the gap grows before the move has faded.
+  double span = piece.curve.knots[piece.curve.degree + 1] - first;
+  for (int k = 0; k < kExposingSpans; ++k, span /= 2)
+    for (const double way : {1, -1}) {
+      TrimPiece moved = piece;
+      if (k > 0) moved.curve = withKnot(moved.curve, first + span);
+      moved.curve.poles.front() += way * aside;
+      moved.gap = largestGap(moved, sheets);
+      if (!isFarthest(moved, span)) continue;
+      piece = std::move(moved);
+      return;
+    }
 }
 
 std::vector<TrimPiece> looseEdge(const SampledCurve& sampled, const std::vector<SheetSide>& sides,

@@ -75,10 +75,11 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
                                                  const std::vector<SheetSide>& sides,
                                                  const Progress& progress);
 
-/// Makes an edge that its sheets do not hold exactly farthest from them at its start, by moving its curve's
-/// first pole aside by twice its gap. STEP has no tolerances of edges: readers look for the distance at a few
-/// places, the ends among them, and take the edge for faulty if it is more between these.
-void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact);
+/// Makes an edge with a gap between `exact` and `most` farthest from its sheets at its start, by moving its
+/// curve's first pole aside by a quarter more than its gap. STEP has no tolerances of edges: readers look for the distance
+/// at a few places, the ends among them, and take the edge for faulty if it is more between these, or follow
+/// it on the sheets by curves of their own, which are worse.
+void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact, double most);
 
 /// Pieces of an edge on the first side's sheet, which the second sheet only touches within the gap: for
 /// sheets that are nearly tangent.

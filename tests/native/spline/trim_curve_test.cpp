@@ -55,6 +55,47 @@ TEST(TrimCurve, IsLedToACornerThatLiesOffItsEndInBothDirections) {
   }
 }
 
+TEST(TrimCurve, ShowsItsGapAtItsStart) {
+  const double scale = 28, length = 9;
+  CurveOnSheet c(interpolated([&](double u, double v) { return Eigen::Vector3d(scale * u, scale * v, 0); },
+                              -1, 1, 4, -1, 1, 4),
+                 {{0, 0, 0}, {length, 0, 0}});
+  for (const auto& p : c.run.points) c.run.uv.push_back(p.head<2>() / scale);
+  const std::vector<SheetSide> sides(2, c.side());
+  const double exact = 1e-7, most = 1e-5;
+  for (const double gap : {4e-8, 4e-7, 4e-6, 4e-5})
+    for (const double risesBy : {0.5, 0.1, 0.01}) {
+      const SplineCurve<3> straight{
+          3, {0, 0, 0, 0, 9, 9, 9, 9}, {{0, 0, 0}, {3, 0, 0}, {6, 0, 0}, {9, 0, 0}}};
+      PlaneCurve onSheet{3, straight.knots, {}};
+      for (const auto& pole : straight.poles) onSheet.poles.push_back(pole.head<2>() / scale);
+      TrimPiece piece{straight, {onSheet, onSheet}, gap};
+      // One image leaves the curve soon after its start, and comes back at its end.
+      auto& off = piece.onSheet[1];
+      for (const double at : {risesBy, 1 - risesBy}) off = withKnot(off, at * length, 3);
+      for (std::size_t i = 3; i + 3 < off.poles.size(); ++i) off.poles[i][1] = gap / scale;
+      exposeGap(piece, sides, exact, most);
+      if (gap < exact || gap > most) {
+        EXPECT_EQ(piece.curve.poles, straight.poles) << gap;
+        continue;
+      }
+      const auto gapAt = [&](double s) {
+        const Eigen::Vector3d p = piece.curve.point(s);
+        double largest = 0;
+        for (const auto& x : piece.onSheet)
+          largest = std::max(largest, (p.head<2>() - scale * x.point(s)).norm());
+        return largest;
+      };
+      EXPECT_GT(gapAt(0), 1.2 * gap);
+      EXPECT_LT(gapAt(0), 1.3 * gap);
+      EXPECT_NEAR(piece.gap, gapAt(0), 1e-2 * gap);
+      EXPECT_LT(gapAt(length), 1e-12);
+      constexpr int kSamples = 100000;
+      for (int i = 1; i < kSamples; ++i)
+        ASSERT_LT(gapAt(length * i / kSamples), gapAt(0)) << gap << ' ' << risesBy << ' ' << i;
+    }
+}
+
 TEST(TrimCurve, LooksForFeetWhereTheCurveIsNotWhereItIsLedTo) {
   const auto wave = [](double u, double v) { return Eigen::Vector3d(u, v, 0.6 * std::sin(3 * u)); };
   std::vector<Eigen::Vector3d> points;
