@@ -1,6 +1,7 @@
 """From a shape or a mesh to quads and B-spline faces: the one function behind the command line, scripts and the GUI."""
 import os
 import time
+from dataclasses import replace
 
 from .cuts import Cut
 from .error import input_error, system_error
@@ -9,7 +10,7 @@ from .joining import check, trim
 from .native import load
 from .options import FIELDS, Options
 from .progress import Progress
-from .regions import RegionResult, map_regions
+from .regions import MOST_WORK_BEFORE_CUT, RegionResult, fit_undivided, map_regions
 from .report import report
 from .source import Source
 from .texture import pattern_image
@@ -33,6 +34,7 @@ class Result:
     def __init__(self, source, options, model):
         self.source = source
         self.options = options
+        self.options_given = options  # as they were given
         self.fit_tolerance = FIT_MARGIN[source.kind] * options.tolerance
         self.model = model
         self.regions = [RegionResult(region) for region in model.regions]
@@ -46,6 +48,8 @@ class Result:
         self.shape_counts = {}
         self.seconds = {}
         self.work_of_replaced = 0  # of the fits of regions that were replaced by their parts
+        self.may_be_divided = False  # a mesh, along its sharp edges, if there are no surfaces of a region over its own map
+        self.work_in_vain = 0  # of the fits of another Result, which this one replaces or which did not replace this one
         self.exhausted = False  # no other ways of fitting any region are tried
         self.started = time.monotonic()
 
@@ -65,6 +69,11 @@ class Result:
     def failed(self):
         """The regions that failed."""
         return [r for r in self.regions if r.error is not None]
+
+    @property
+    def undivided(self):
+        """The regions that failed and may not if the mesh is divided along its sharp edges."""
+        return [r for r in self.failed if r.may_be_divided]
 
     def replace_by_parts(self, parts):
         """Replaces regions that failed by their parts (number of the region: RegionParts). Returns the numbers and the
@@ -150,10 +159,46 @@ def _convert(source, options, progress):
     result.started = started
     result.seconds["tessellate"] = time.monotonic() - started
     map_regions(list(enumerate(result.regions)), result, progress)
-    trim(result, progress)
+    if result.undivided:
+        result = _divided_where_that_helps(result, thing, progress)
+    else:
+        trim(result, progress)
     _warn_of_regions(result)
     _warn_of_holes(result)
     check(result, progress)
+    return result
+
+
+def _divided_where_that_helps(whole, mesh, progress):
+    """The Result of a mesh in which surfaces cannot follow sharp edges inside a region: divided along all of them, if all
+    regions are converted then, or some where none of the whole is. Else that of the whole, over other maps."""
+    divided = _divided(whole, mesh, progress)
+    if divided is not None:
+        trim(divided, progress)
+        if not divided.failed:
+            return divided
+        whole.work_in_vain = divided.work
+        whole.exhausted = divided.work > MOST_WORK_BEFORE_CUT
+    fit_undivided(whole, progress)
+    trim(whole, progress)
+    return whole if divided is None or divided.spline is None or whole.spline is not None else divided
+
+
+def _divided(whole, mesh, progress):
+    """The Result, up to the fit, of a mesh divided along its sharp edges; None where these divide nothing."""
+    with progress.stage("cut") as native_progress:
+        options = replace(whole.options_given, features="trim")
+        result = _mesh_model(whole.source, mesh, options, native_progress)
+    if len(result.regions) <= len(whole.regions):
+        return None
+    result.started, result.seconds = whole.started, dict(whole.seconds)
+    result.work_in_vain = whole.work
+    map_regions(list(enumerate(result.regions)), result, progress)
+    failed = whole.undivided[0]
+    result.warnings.append(
+        f"region '{failed.name}' could not be converted as a whole (stage {failed.error.stage}: {failed.error}); the mesh was "
+        f"divided along its sharp edges into {len(result.regions)} regions, as --features trim does"
+    )
     return result
 
 
@@ -176,9 +221,12 @@ def _cad_model(source, shape, options, native_progress):
 def _mesh_model(source, mesh, options, native_progress):
     native = load()
     repaired = native.repair(mesh)
+    given = options
     options = options.resolved("mesh", repaired.area, repaired.diagonal, os.cpu_count() or 1)
     model = native.mesh_model(repaired, _feature_options(options), native_progress)
     result = Result(source, options, model)
+    result.options_given = given
+    result.may_be_divided = given.features is None and options.field in FIELDS
     result.shape_counts = {"faces": mesh.triangles, "edges": len(model.curves)}
     result.repairs = repaired.repairs
     if repaired.summary:

@@ -16,9 +16,8 @@ REFITS = (
     {"slides": False},
     {"smallest_rectangle": True, "slides": False},
     {"cut": True},
-    {"smoother": True},
-    {"cut": True},
-    {"smoother": True},
+    {"cut": True, "smoother": True},
+    {"cut": True, "smoother": True},
     {"smoother": True},
     {"smoother": True},
     {"part": 0.4},
@@ -186,9 +185,9 @@ def _applies(way, item, charts):
         return False
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
-    if "smoother" in way:
-        return bool(charts) and item.fitted.several
-    return bool(charts) or "cut" not in way
+    if "cut" in way:
+        return bool(charts)
+    return "smoother" not in way or (bool(charts) and item.fitted.several)
 
 
 def _fit_parts_closer(item, result, progress):

@@ -17,7 +17,9 @@ ENOUGH = 0.95
 MORE_POLES, FEW_POLES = 5, 1000
 # Work of a region's fits after which no other ways of fitting it are tried; less where it can be cut instead. And the same
 # for a whole model. 1e6 steps take about half a second. Work rather than time, so that results do not depend on the machine.
-MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 60e6, 10e6, 150e6
+MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
+# After so much, surfaces that have folds, which may do no harm, are not given up for those over another map.
+MOST_WORK_BEFORE_CHOICE = 8e6
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
@@ -80,6 +82,7 @@ class RegionResult:
         self.smoothings = {}  # by chart: in how many steps its surface is made smoother, for the same reason
         self.seconds = {}
         self.work = 0  # of its fits: samples whose feet were looked for
+        self.may_be_divided = False  # along its sharp edges, as it failed
         self.cut_from = None
         self.fitted_closer = False
         self.left_out = None  # surfaces that could not be trimmed, and those around then
@@ -186,7 +189,7 @@ def _map_region(item, index, result, progress):
     for halving in range(HALVINGS + 1):
         try:
             _try_region(item, index, result, progress)
-            if item.fitted is not None and item.fitted.folded:
+            if item.fitted is not None and item.fitted.folded and item.work <= MOST_WORK_BEFORE_CHOICE:
                 most = item.fitted.control_points
                 fit_over_another_map(item, result, progress,
                                      takes=lambda fitted: not fitted.folded and fitted.control_points <= most)
@@ -199,11 +202,25 @@ def _map_region(item, index, result, progress):
                 item.region = item.mapped_region
                 item.grid = item.quads = item.fitted = None
                 continue
-            if not (error.stage == "fit" and fit_over_another_map(item, result, progress)):
+            item.may_be_divided = (
+                result.may_be_divided and error.stage == "fit" and item.region.features["aligned_edges"] > 0
+            )
+            if item.may_be_divided or not _fits_over_another_map(item, error, result, progress):
                 item.error = error
         except MemoryError as error:
             item.error = system_error("memory", error)
         return
+
+
+def fit_undivided(result, progress):
+    """What _map_region() puts off while a mesh may be divided: surfaces over other maps of its regions."""
+    for item in result.undivided:
+        if _fits_over_another_map(item, item.error, result, progress):
+            item.error = None
+
+
+def _fits_over_another_map(item, error, result, progress):
+    return error.stage == "fit" and fit_over_another_map(item, result, progress)
 
 
 def _try_region(item, index, result, progress):
@@ -295,7 +312,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
 
 def exhausted(item, result, progress):
     """Whether fits took so much work that no other ways of fitting a region are to be tried."""
-    if result.exhausted or item.work > MOST_WORK:
+    if result.exhausted or item.work + result.work_in_vain > MOST_WORK:
         return True
     return item.work > MOST_WORK_BEFORE_CUT and has_parts(item, result, progress)
 

@@ -259,21 +259,30 @@ def test_the_seconds_of_a_route_that_failed_count(monkeypatch):
     assert region.seconds["field"] > 0 and region.seconds["seamless"] > 0
 
 
-def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monkeypatch):
+def _folded_sheet(crease_from=0):
+    """(points, triangles) of a square sheet that is folded along its middle line, from a row of points on."""
     import numpy as np
 
     n = 16
     steps = np.arange(n + 1.0)
-    points = np.array([(x, y, 0.7 * abs(x - 8)) for y in steps for x in steps])
+    slope = [0.7 * min(1, max(0, (y - crease_from + 1) / 4)) if crease_from else 0.7 for y in steps]
+    points = np.array([(x, y, s * abs(x - 8)) for y, s in zip(steps, slope) for x in steps])
     corner = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
     triangles = np.vstack([np.c_[corner, corner + 1, corner + n + 2], np.c_[corner, corner + n + 2, corner + n + 1]])
+    return points, triangles
+
+
+def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monkeypatch):
+    import numpy as np
+
     module = sys.modules["trimquad.regions"]
     native = _NoCreases(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
-    result = trimquad.convert((points, triangles), trimquad.Options(quads=100, relative_tolerance=5e-3))
+    options = trimquad.Options(quads=100, relative_tolerance=5e-3, features="align")
+    result = trimquad.convert(_folded_sheet(), options)
     (region,) = result.regions
     assert region.error is None and region.fitted_from is not region
-    assert region.region.features["aligned_edges"] == n
+    assert region.region.features["aligned_edges"] == 16
     assert any("cannot follow its sharp edges" in line for line in result.warnings)
     assert len(result.shape.Faces) == 1
     result.shape.check(True)
@@ -283,3 +292,58 @@ def test_creases_that_cannot_be_fitted_are_rounded_and_the_quads_keep_them(monke
     assert result.report["regions"][0]["features"]["creases"] is False
     x = np.array(region.polygons.points)[:, 0]
     assert np.count_nonzero(np.abs(x - 8) < 1e-9) >= 8
+
+
+def test_a_mesh_whose_creases_cannot_be_fitted_is_divided_along_them(monkeypatch):
+    module = sys.modules["trimquad.regions"]
+    native = _NoCreases(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert(_folded_sheet(), trimquad.Options(quads=100))
+    assert not result.failed and len(result.regions) == 2
+    assert any("divided along its sharp edges into 2 regions" in line for line in result.warnings)
+    assert result.report["options"]["features"] == "trim"
+    assert len(result.shape.Faces) == 2 and len(result.shape.Edges) == 7
+    result.shape.check(True)
+    assert all(region.quads is not None for region in result.regions)
+
+
+def test_a_mesh_that_its_creases_do_not_divide_stays_whole(monkeypatch):
+    module = sys.modules["trimquad.regions"]
+    native = _NoCreases(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert(_folded_sheet(crease_from=9), trimquad.Options(quads=100, relative_tolerance=2e-2))
+    (region,) = result.regions
+    assert region.error is None and region.fitted_from is not region
+    assert result.report["options"]["features"] == "align"
+    assert not any("divided" in line for line in result.warnings)
+
+
+def test_a_mesh_that_cannot_be_fitted_when_it_is_divided_either_is_told_of_as_a_whole(monkeypatch):
+    class NoFit(_NoCreases):
+        def fit_surface(self, region, *rest):
+            raise trimquad.Error("stage", "fit", "the tolerance cannot be met", region.name)
+
+    module = sys.modules["trimquad.regions"]
+    native = NoFit(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    result = trimquad.convert(_folded_sheet(), trimquad.Options(quads=100))
+    (region,) = result.regions
+    assert region.error.stage == "fit" and result.spline is None
+    assert region.quads is not None
+    assert not any("divided" in line for line in result.warnings)
+
+
+def test_what_can_be_fitted_of_a_divided_mesh_is_better_than_nothing(monkeypatch):
+    class Half(_NoCreases):
+        def fit_surface(self, region, *rest):
+            if region.features["aligned_edges"] or region.name.endswith("part 1"):
+                raise trimquad.Error("stage", "fit", "the tolerance cannot be met", region.name)
+            return self._native.fit_surface(region, *rest)
+
+    module = sys.modules["trimquad.regions"]
+    native = Half(module.load())
+    monkeypatch.setattr(module, "load", lambda: native)
+    monkeypatch.setattr(module, "_without_creases", lambda item, result: None)
+    result = trimquad.convert(_folded_sheet(), trimquad.Options(quads=100))
+    assert [region.name for region in result.failed] == ["component 0 part 1"]
+    assert len(result.shape.Faces) == 1

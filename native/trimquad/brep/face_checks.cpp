@@ -13,18 +13,49 @@
 namespace trimquad {
 namespace {
 
-/// The pairs of faces that share an edge, one of them at least among these; ascending.
-std::set<std::pair<int, int>> neighboursOf(const SplineModel& model, const std::vector<int>& faces) {
-  std::vector<std::vector<int>> users(model.edges.size());
+/// Faces of one region that turn against each other by more than this somewhere along a common border may
+/// cross beside it: around singularities, and where the region has a crease. Sine of 10 degrees.
+constexpr double kBent = 0.1736;
+constexpr int kPlacesOfBorder = 64;
+
+struct EdgeUse {
+  int face;
+  const SplineCoedge* coedge;
+};
+
+bool isBent(const SplineModel& model, const EdgeUse& a, const EdgeUse& b) {
+  const SplineFace &faceA = model.faces[a.face], &faceB = model.faces[b.face];
+  if (a.face == b.face || faceA.region != faceB.region) return false;
+  const auto normal = [](const SplineFace& face, const PlaneCurve& curve, double s) -> Eigen::Vector3d {
+    const Eigen::Vector2d x = curve.point(s);
+    const auto jet = face.surface.jet(x[0], x[1]);
+    return jet.su.cross(jet.sv);
+  };
+  const PlaneCurve &onA = a.coedge->curve, &onB = b.coedge->curve;
+  for (int i = 0; i < kPlacesOfBorder; ++i) {
+    const double s = onA.first() + (onA.last() - onA.first()) * (i + 0.5) / kPlacesOfBorder;
+    const Eigen::Vector3d m = normal(faceA, onA, s), n = normal(faceB, onB, s);
+    if (m.cross(n).norm() > kBent * m.norm() * n.norm()) return true;
+  }
+  return false;
+}
+
+/// The pairs of faces that share an edge and may cross beside it: one of them has folds, or they turn against
+/// each other; ascending.
+std::set<std::pair<int, int>> neighboursToCheck(const SplineModel& model, const std::vector<int>& folded) {
+  std::vector<std::vector<EdgeUse>> users(model.edges.size());
   for (int f = 0; f < int(model.faces.size()); ++f)
     for (const auto& loop : model.faces[f].loops)
-      for (const auto& coedge : loop) users[coedge.edge.index].push_back(f);
+      for (const auto& coedge : loop) users[coedge.edge.index].push_back({f, &coedge});
   std::set<std::pair<int, int>> result;
-  for (const int f : faces)
+  for (const int f : folded)
     for (const auto& loop : model.faces.at(f).loops)
       for (const auto& coedge : loop)
-        for (const int other : users[coedge.edge.index])
-          if (other != f) result.insert(std::minmax(f, other));
+        for (const auto& other : users[coedge.edge.index])
+          if (other.face != f) result.insert(std::minmax(f, other.face));
+  for (const auto& uses : users)
+    if (uses.size() == 2 && isBent(model, uses[0], uses[1]))
+      result.insert(std::minmax(uses[0].face, uses[1].face));
   return result;
 }
 
@@ -114,7 +145,7 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   std::vector<std::vector<int>> single, pairs;
   for (int f = 0; f < int(faces.size()); ++f) single.push_back({f});
   auto result = check(single);
-  for (const auto& [a, b] : neighboursOf(model, folded))
+  for (const auto& [a, b] : neighboursToCheck(model, folded))
     if (result[a].empty() && result[b].empty()) pairs.push_back({a, b});
   const auto together = check(pairs);
   for (std::size_t k = 0; k < pairs.size(); ++k)

@@ -12,9 +12,10 @@ namespace trimquad {
 /// are not checked again.
 class FaceChecks {
  public:
-  /// What is wrong with each face of the model alone (see faults()), in the model's order; with faces that
-  /// have folds, by index, also together with each face that they share an edge with, which counts for both.
-  /// On up to `threads` threads. Throws Error(Stage, "write") as assemble() does.
+  /// What is wrong with each face of the model alone (see faults()), in the model's order. Also of two that
+  /// share an edge together, which counts for both: where one of them is among `folded`, indices of faces
+  /// that have folds, or both are of one region and bent against each other somewhere along the edge. On up
+  /// to `threads` threads. Throws Error(Stage, "write") as assemble() does.
   std::vector<std::vector<std::string>> faults(const SplineModel& model, const std::vector<int>& folded,
                                                int threads);
 

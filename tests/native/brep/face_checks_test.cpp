@@ -12,22 +12,36 @@ using namespace test;
 
 using Faults = std::vector<std::vector<std::string>>;
 
-TEST(FaceChecks, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
+/// A box of which two faces are left, one with a spike, away from its edges, through the middle of the other.
+SplineModel spikedFaces() {
   auto model = bulgedBox(0.8, {1, 5}).trim();
   const auto middle = [](const SplineSurface& s) -> Eigen::Vector3d {
     return s.point((s.firstU() + s.lastU()) / 2, (s.firstV() + s.lastV()) / 2);
   };
-  // A spike of the second face, away from its edges, through the middle of the first.
   const Eigen::Vector3d across = middle(model.faces[0].surface) - middle(model.faces[1].surface);
   auto& spiked = model.faces[1].surface;
   for (const int i : {-1, 0, 1})
     for (const int j : {-1, 0, 1})
       spiked.poles[spiked.countU / 2 + i + spiked.countU * (spiked.countV / 2 + j)] += 2 * across;
+  return model;
+}
+
+TEST(FaceChecks, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
+  const auto model = spikedFaces();
   const std::vector<std::string> none;
   for (const auto& faults : FaceChecks().faults(model, {}, 1))
     EXPECT_EQ(faults, none) << "each alone has none";
   for (const int folded : {0, 1})
     for (const auto& faults : FaceChecks().faults(model, {folded}, 2)) EXPECT_NE(faults, none);
+}
+
+TEST(FaceChecks, neighboursOfOneRegionThatCrossAreFoundWhereTheyAreBentAgainstEachOther) {
+  auto model = spikedFaces();
+  ASSERT_NE(model.faces[0].region, model.faces[1].region);
+  const std::vector<std::string> none;
+  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_EQ(faults, none);
+  model.faces[1].region = model.faces[0].region;
+  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_NE(faults, none);
 }
 
 TEST(FaceChecks, findAgainWhatIsStillThereAndWhatIsNew) {
