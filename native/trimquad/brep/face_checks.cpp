@@ -14,8 +14,8 @@ namespace trimquad {
 namespace {
 
 /// Faces of one region that turn against each other by more than this somewhere along a common border may
-/// cross beside it: around singularities, and where the region has a crease. Sine of 10 degrees.
-constexpr double kBent = 0.1736;
+/// cross beside it: around singularities, and where the region has a crease. Sine of 20 degrees.
+constexpr double kBent = 0.342;
 constexpr int kPlacesOfBorder = 64;
 
 struct EdgeUse {
