@@ -87,6 +87,7 @@ class Result:
                 for name in ("region", "mapped_region", "bridged"):
                     if getattr(whole, name) is before[number]:
                         setattr(whole, name, region)
+                whole.put_aside.clear()  # of the regions of the model before
                 self.regions.append(whole)
                 continue
             for index, region in (next(places) for _ in range(parts[number].count)):

@@ -78,6 +78,7 @@ class RegionResult:
         self.refits = self.field_edits = 0
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
         self.other_maps = []  # those that were tried
+        self.put_aside = {}  # surfaces over another map that may still be taken: by map, its RegionResult and mesh
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.smoothings = {}  # by chart: in how many steps its surface is made smoother, for the same reason
         self.seconds = {}
@@ -267,6 +268,14 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
     for way in ways:
         if way in item.other_maps:
             continue
+        if way in item.put_aside:
+            other, refined = item.put_aside[way]
+            if takes(other.fitted):
+                native.place_region(result.model, index, refined)
+                item.other_maps.append(way)
+                _fit_from(item, other)
+                return True
+            continue
         if exhausted(item, result, progress):
             break
         item.other_maps.append(way)
@@ -294,9 +303,9 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
             if not takes(other.fitted):
                 # They may be taken where the region's own turn out to be at fault.
                 item.other_maps = [w for w in item.other_maps if w != way]
+                item.put_aside[way] = other, native.copy_region(result.model.regions[index])
                 continue
-            item.fitted, item.fitted_from = other.fitted, other
-            item.refits, item.bisections, item.smoothings = 0, [], {}
+            _fit_from(item, other)
             return True
         except Error as error:
             if error.kind == "cancelled":
@@ -308,6 +317,12 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
             if item.fitted_from is not other:
                 native.place_region(result.model, index, placed)
     return False
+
+
+def _fit_from(item, other):
+    """Takes the surfaces over another map as those of a region."""
+    item.fitted, item.fitted_from = other.fitted, other
+    item.refits, item.bisections, item.smoothings = 0, [], {}
 
 
 def exhausted(item, result, progress):

@@ -52,6 +52,21 @@ def test_one_surface_that_folds_is_not_taken_where_several_do_not(monkeypatch, f
     assert region.fitted.control_points == (10 if taken else 400)
 
 
+def test_surfaces_that_were_not_taken_at_first_are_not_fitted_anew(monkeypatch):
+    regions = sys.modules["trimquad.regions"]
+    waiting = fit_alike(monkeypatch, (1, 10), (0, 400))
+    result = trimquad.convert(cap(2.4), trimquad.Options(quads=300))
+    (region,) = result.regions
+    assert waiting == [] and region.fitted_from is region
+    work, triangles = region.work, region.mapped_region.triangles
+    assert regions.fit_over_another_map(region, result, trimquad.Progress(), [regions.WITHOUT_SINGULARITIES])
+    assert region.fitted.control_points == 10 and region.fitted_without_singularities
+    assert region.work == work and region.mapped_region.triangles == triangles
+    # The model holds the mesh that these surfaces are of.
+    assert result.model.regions[0].triangles == region.fitted_from.mapped_region.triangles
+    assert region.fitted_from.grid.arrays[1].shape[0] >= region.fitted_from.mapped_region.triangles
+
+
 def test_one_surface_over_too_distorted_a_map_is_not_looked_for(monkeypatch):
     waiting = fit_alike(monkeypatch, (0, 400))
     monkeypatch.setattr(sys.modules["trimquad.regions"], "MOST_DISTORTION", 4.5)
