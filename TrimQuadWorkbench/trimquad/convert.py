@@ -34,7 +34,6 @@ class Result:
     def __init__(self, source, options, model):
         self.source = source
         self.options = options
-        self.options_given = options  # as they were given
         self.fit_tolerance = FIT_MARGIN[source.kind] * options.tolerance
         self.model = model
         self.regions = [RegionResult(region) for region in model.regions]
@@ -188,7 +187,7 @@ def _divided_where_that_helps(whole, mesh, progress):
 def _divided(whole, mesh, progress):
     """The Result, up to the fit, of a mesh divided along its sharp edges; None where these divide nothing."""
     with progress.stage("cut") as native_progress:
-        options = replace(whole.options_given, features="trim")
+        options = replace(whole.options, features="trim")
         result = _mesh_model(whole.source, mesh, options, native_progress)
     if len(result.regions) <= len(whole.regions):
         return None
@@ -222,14 +221,13 @@ def _cad_model(source, shape, options, native_progress):
 def _mesh_model(source, mesh, options, native_progress):
     native = load()
     repaired = native.repair(mesh)
-    given = options
+    by_default = options.features is None
     options = options.resolved("mesh", repaired.area, repaired.diagonal, os.cpu_count() or 1)
     model = native.mesh_model(repaired, _feature_options(options), native_progress)
     result = Result(source, options, model)
-    result.options_given = given
     # What is said of its edges and directions would mean nothing where it is divided.
     result.may_be_divided = (
-        given.features is None and options.field in FIELDS and not (options.align or options.free or options.feature_points)
+        by_default and options.field in FIELDS and not (options.align or options.free or options.feature_points)
     )
     result.shape_counts = {"faces": mesh.triangles, "edges": len(model.curves)}
     result.repairs = repaired.repairs

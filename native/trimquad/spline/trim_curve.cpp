@@ -474,10 +474,12 @@ void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exa
   const Eigen::Vector3d aside = kExposedGap * piece.gap * normal(jet).cross(along).normalized();
   std::vector<const Sheet*> sheets;
   for (const auto& side : sides) sheets.push_back(side.sheet);
-  const auto isFarthest = [&](const TrimPiece& moved, double span) {
+  // Looks at the first span before it searches the whole curve.
+  const auto isFarthest = [&](TrimPiece& moved, double span) {
     const double atStart = gapAt(moved, sheets, first);
     for (int i = 1; i <= kExposingSamples; ++i)
       if (gapAt(moved, sheets, first + span * i / kExposingSamples) > kExposedFall * atStart) return false;
+    moved.gap = largestGap(moved, sheets);
     return moved.gap <= atStart;
   };
   // The first pole is felt on the curve's first span; on a long one the gap grows before the move has faded.
@@ -487,7 +489,6 @@ void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exa
       TrimPiece moved = piece;
       if (k > 0) moved.curve = withKnot(moved.curve, first + span);
       moved.curve.poles.front() += way * aside;
-      moved.gap = largestGap(moved, sheets);
       if (!isFarthest(moved, span)) continue;
       piece = std::move(moved);
       return;
