@@ -17,12 +17,10 @@ int knotSpan(std::span<const double> knots, int degree, double t) {
 
 namespace {
 
-/// \tparam Degree where the compiler is to know it: most of the time of a fit goes here
-template <int Degree = 0>
-void basisFunctionsOfDegree(std::span<const double> knots, int runtimeDegree, double t, int order,
-                            BasisFunctions& result) {
-  constexpr int size = (Degree > 0 ? Degree : kMaxSplineDegree) + 1;
-  const int degree = Degree > 0 ? Degree : runtimeDegree;
+/// Any order. (Piegl & Tiller, The NURBS Book, A2.3)
+void basisFunctionsOfAnyOrder(std::span<const double> knots, int degree, double t, int order,
+                              BasisFunctions& result) {
+  constexpr int size = kMaxSplineDegree + 1;
   const int span = knotSpan(knots, degree, t), computed = std::min(order, degree);
   result.first = span - degree;
   double table[size][size], left[size], right[size];
@@ -71,17 +69,83 @@ void basisFunctionsOfDegree(std::span<const double> knots, int runtimeDegree, do
     for (int j = 0; j <= degree; ++j) result.value[k][j] = 0;
 }
 
+/// Up to second derivatives: most of the time of a fit goes here. A function's derivatives are differences of
+/// those of the degrees below, which the recursion passes on its way. \tparam Degree, Order where the
+/// compiler is to know them
+template <int Degree, int Order>
+void basisFunctionsOf(std::span<const double> knots, double t, BasisFunctions& result) {
+  static_assert(Order <= 2 && Order <= Degree);
+  const int span = knotSpan(knots, Degree, t);
+  result.first = span - Degree;
+  double left[Degree + 1], right[Degree + 1];
+  double value[Degree + 1];  // of the functions of degree j
+  double part[Degree + 1];   // those of degree j - 1 by the length of the interval on which they live
+  double partBefore[Degree + 1], perLength[Degree + 1];
+  value[0] = 1;
+#pragma GCC unroll 8
+  for (int j = 1; j <= Degree; ++j) {
+    left[j] = t - knots[span + 1 - j];
+    right[j] = knots[span + j] - t;
+    if (Order == 2 && j == Degree) std::copy_n(part, Degree - 1, partBefore);
+    double saved = 0;
+#pragma GCC unroll 8
+    for (int r = 0; r < j; ++r) {
+      perLength[r] = 1 / (right[r + 1] + left[j - r]);
+      part[r] = value[r] * perLength[r];
+      value[r] = saved + right[r + 1] * part[r];
+      saved = left[j - r] * part[r];
+    }
+    value[j] = saved;
+  }
+  for (int j = 0; j <= Degree; ++j) result.value[0][j] = value[j];
+  if constexpr (Order >= 1) {
+    result.value[1][0] = -Degree * part[0];
+    for (int j = 1; j < Degree; ++j) result.value[1][j] = Degree * (part[j - 1] - part[j]);
+    result.value[1][Degree] = Degree * part[Degree - 1];
+  }
+  if constexpr (Order == 2) {
+    double slope[Degree];  // of the functions of degree Degree - 1, by Degree - 1 and their interval's length
+    slope[0] = -partBefore[0] * perLength[0];
+    for (int j = 1; j < Degree - 1; ++j) slope[j] = (partBefore[j - 1] - partBefore[j]) * perLength[j];
+    slope[Degree - 1] = partBefore[Degree - 2] * perLength[Degree - 1];
+    constexpr double factor = Degree * (Degree - 1);
+    result.value[2][0] = -factor * slope[0];
+    for (int j = 1; j < Degree; ++j) result.value[2][j] = factor * (slope[j - 1] - slope[j]);
+    result.value[2][Degree] = factor * slope[Degree - 1];
+  }
+}
+
+template <int Degree>
+void basisFunctionsOfDegree(std::span<const double> knots, double t, int order, BasisFunctions& result) {
+  switch (order) {
+    case 0:
+      return basisFunctionsOf<Degree, 0>(knots, t, result);
+    case 1:
+      return basisFunctionsOf<Degree, 1>(knots, t, result);
+    case 2:
+      return basisFunctionsOf<Degree, 2>(knots, t, result);
+    default:
+      return basisFunctionsOfAnyOrder(knots, Degree, t, order, result);
+  }
+}
+
 }  // namespace
 
 void basisFunctions(std::span<const double> knots, int degree, double t, int order, BasisFunctions& result) {
   TRIMQUAD_ASSERT(degree >= 1 && degree <= kMaxSplineDegree && order <= kMaxSplineDegree);
   switch (degree) {
     case 2:
-      return basisFunctionsOfDegree<2>(knots, degree, t, order, result);
+      return basisFunctionsOfDegree<2>(knots, t, order, result);
     case 3:
-      return basisFunctionsOfDegree<3>(knots, degree, t, order, result);
+      return basisFunctionsOfDegree<3>(knots, t, order, result);
+    case 4:
+      return basisFunctionsOfDegree<4>(knots, t, order, result);
+    case 5:
+      return basisFunctionsOfDegree<5>(knots, t, order, result);
+    case 9:
+      return basisFunctionsOfDegree<9>(knots, t, order, result);
     default:
-      return basisFunctionsOfDegree(knots, degree, t, order, result);
+      return basisFunctionsOfAnyOrder(knots, degree, t, order, result);
   }
 }
 
