@@ -5,8 +5,8 @@
 #include <numbers>
 
 // Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
-#include "quads/sample_maps.h"
-#include "spline/analytic_region.h"
+#include "support/sample_maps.h"
+#include "support/analytic_region.h"
 #include "support/grid_maps.h"
 #include "trimquad/spline/trim_model.h"
 

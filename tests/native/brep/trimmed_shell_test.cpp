@@ -7,9 +7,9 @@
 #include <numbers>
 
 // Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
-#include "quads/sample_maps.h"
-#include "spline/analytic_region.h"
-#include "spline/fit_figures.h"
+#include "support/sample_maps.h"
+#include "support/analytic_region.h"
+#include "support/fit_figures.h"
 #include "support/grid_maps.h"
 #include "trimquad/mesh/polyline_curve.h"
 #include "trimquad/spline/trim_model.h"

@@ -1,8 +1,8 @@
 #include "trimquad/embed/embed.h"
 #include "support/rounds.h"
 
-#include "tmesh/random_surfaces.h"
-#include "tmesh/tmesh_checks.h"
+#include "support/random_surfaces.h"
+#include "support/tmesh_checks.h"
 #include "trimquad/mesh/collapse_edge.h"
 
 using namespace trimquad;

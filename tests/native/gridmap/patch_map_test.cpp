@@ -1,8 +1,8 @@
 #include "trimquad/gridmap/patch_map.h"
 #include "support/rounds.h"
 
-#include "tmesh/random_surfaces.h"
-#include "tmesh/tmesh_checks.h"
+#include "support/random_surfaces.h"
+#include "support/tmesh_checks.h"
 #include "trimquad/embed/embed.h"
 
 using namespace trimquad;

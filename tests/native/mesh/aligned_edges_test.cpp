@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 #include "trimquad/mesh/mesh_model.h"
 #include "trimquad/mesh/split_triangles.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 
 namespace trimquad {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "mesh/mesh_samples.h"
+#include "support/mesh_samples.h"
 
 using namespace trimquad;
 

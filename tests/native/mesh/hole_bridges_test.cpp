@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 #include "trimquad/mesh/hole_cap.h"
 #include "trimquad/mesh/mesh_model.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 
 namespace trimquad {
 namespace {

@@ -1,6 +1,6 @@
 #include "trimquad/mesh/polyline_curve.h"
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 
 namespace trimquad {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "quads/sample_maps.h"
+#include "support/sample_maps.h"
 #include "trimquad/base/error.h"
 #include "trimquad/mesh/write_obj.h"
 

@@ -3,7 +3,7 @@
 #include <locale>
 
 #include "mesh_file_samples.h"
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 #include "trimquad/mesh/polygon.h"
 
 namespace trimquad {

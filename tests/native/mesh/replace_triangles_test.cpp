@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "mesh/mesh_samples.h"
+#include "support/mesh_samples.h"
 
 using namespace trimquad;
 

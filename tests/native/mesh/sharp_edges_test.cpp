@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 #include "trimquad/mesh/feature_graph.h"
 #include "trimquad/mesh/mesh_model.h"
 

@@ -1,6 +1,6 @@
 #include <Eigen/Geometry>
 
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 #include "trimquad/mesh/aabb_tree.h"
 
 namespace trimquad {

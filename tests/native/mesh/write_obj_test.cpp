@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "mesh_file_samples.h"
-#include "mesh_samples.h"
+#include "support/mesh_samples.h"
 
 namespace trimquad {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "sample_maps.h"
+#include "support/sample_maps.h"
 #include "trimquad/quads/extract_quads.h"
 
 namespace trimquad {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "quad_checks.h"
-#include "random_triangulation.h"
+#include "support/random_triangulation.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;

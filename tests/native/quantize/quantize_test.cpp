@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "quotient.h"
-#include "tmesh/random_surfaces.h"
-#include "tmesh/tmesh_checks.h"
+#include "support/random_surfaces.h"
+#include "support/tmesh_checks.h"
 #include "trimquad/quantize/circuits.h"
 #include "trimquad/quantize/greedy.h"
 #include "trimquad/quantize/neighbourhoods.h"

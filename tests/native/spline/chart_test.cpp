@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <string>
 
-#include "spline/analytic_region.h"
+#include "support/analytic_region.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {

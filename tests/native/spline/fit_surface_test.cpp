@@ -5,7 +5,7 @@
 #include <optional>
 #include <random>
 
-#include "spline/analytic_region.h"
+#include "support/analytic_region.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "quads/sample_maps.h"
+#include "support/sample_maps.h"
 
 namespace trimquad {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "quads/sample_maps.h"
+#include "support/sample_maps.h"
 #include "support/grid_maps.h"
 
 namespace trimquad {

@@ -1,4 +1,4 @@
-#include "tmesh_checks.h"
+#include "support/tmesh_checks.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;

@@ -1,8 +1,8 @@
 // Random surfaces, most of them on coarse lattices where everything coincides that can.
 
-#include "random_surfaces.h"
+#include "support/random_surfaces.h"
 #include "support/rounds.h"
-#include "tmesh_checks.h"
+#include "support/tmesh_checks.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;

@@ -1,7 +1,6 @@
-#pragma once
+#include "support/mesh_samples.h"
 
 #include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <map>
@@ -9,15 +8,9 @@
 #include <optional>
 #include <random>
 
-#include "trimquad/base/error.h"
-#include "trimquad/mesh/surface_mesh.h"
-
 namespace trimquad {
 
-inline constexpr double kPi = std::numbers::pi;
-
-/// The error that `action` throws.
-inline std::optional<Error> errorOf(const std::function<void()>& action) {
+std::optional<Error> errorOf(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -26,10 +19,7 @@ inline std::optional<Error> errorOf(const std::function<void()>& action) {
   return {};
 }
 
-/// columns x rows squares, each cut in two triangles, at surface(i, j); i runs from 0 to columns, j from 0 to
-/// rows.
-inline TriangleSoup sheet(int columns, int rows,
-                          const std::function<Eigen::Vector3d(double, double)>& surface) {
+TriangleSoup sheet(int columns, int rows, const std::function<Eigen::Vector3d(double, double)>& surface) {
   TriangleSoup soup;
   for (int i = 0; i <= columns; ++i)
     for (int j = 0; j <= rows; ++j) soup.points.push_back(surface(i, j));
@@ -42,12 +32,11 @@ inline TriangleSoup sheet(int columns, int rows,
   return soup;
 }
 
-inline TriangleSoup flatSheet(int columns, int rows) {
+TriangleSoup flatSheet(int columns, int rows) {
   return sheet(columns, rows, [](double x, double y) { return Eigen::Vector3d(x, y, 0); });
 }
 
-/// The surface of the unit cube, outward, every corner once.
-inline TriangleSoup cube() {
+TriangleSoup cube() {
   TriangleSoup soup;
   for (int i = 0; i < 8; ++i) soup.points.emplace_back(i & 1, i >> 1 & 1, i >> 2);
   for (const auto& q :
@@ -58,8 +47,7 @@ inline TriangleSoup cube() {
   return soup;
 }
 
-/// A band of n squares closed after `halfTwists` half twists.
-inline TriangleSoup band(int n, int halfTwists) {
+TriangleSoup band(int n, int halfTwists) {
   TriangleSoup soup;
   for (int i = 0; i < n; ++i) {
     const double a = 2 * kPi * i / n, b = a * halfTwists / 2;
@@ -77,8 +65,7 @@ inline TriangleSoup band(int n, int halfTwists) {
   return soup;
 }
 
-/// A sphere of radius r around the origin, outward: the cube's surface, subdivided and projected.
-inline TriangleSoup sphere(double r, int subdivisions) {
+TriangleSoup sphere(double r, int subdivisions) {
   TriangleSoup soup = cube();
   for (auto& p : soup.points) p -= Eigen::Vector3d::Constant(0.5);
   for (int s = 0; s < subdivisions; ++s) {
@@ -100,8 +87,7 @@ inline TriangleSoup sphere(double r, int subdivisions) {
   return soup;
 }
 
-/// Every triangle with three vertices of its own.
-inline TriangleSoup exploded(const TriangleSoup& soup) {
+TriangleSoup exploded(const TriangleSoup& soup) {
   TriangleSoup result;
   for (const auto& t : soup.triangles) {
     const int n = int(result.points.size());
@@ -111,7 +97,7 @@ inline TriangleSoup exploded(const TriangleSoup& soup) {
   return result;
 }
 
-inline double enclosedVolume(const TriangleSoup& soup) {
+double enclosedVolume(const TriangleSoup& soup) {
   double volume = 0;
   for (const auto& [a, b, c] : soup.triangles)
     volume += soup.points[a].dot(soup.points[b].cross(soup.points[c])) / 6;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sample_maps.h"
+#include "support/sample_maps.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad::samples {

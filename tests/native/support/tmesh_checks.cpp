@@ -1,18 +1,13 @@
-#pragma once
+#include "support/tmesh_checks.h"
 
 #include <gtest/gtest.h>
-
 #include <map>
 #include <random>
 #include <set>
 
-#include "quads/sample_maps.h"
-#include "trimquad/tmesh/partition.h"
-
 namespace trimquad {
 
-/// Every triangle in a chart of its own, turned and shifted by any number of quanta: the same seamless map.
-inline void shuffleSeamlessCharts(Parametrization& map, std::mt19937& random) {
+void shuffleSeamlessCharts(Parametrization& map, std::mt19937& random) {
   for (const auto f : map.mesh.faces()) {
     const Transition t{int(random() % 4),
                        {Quanta(random() % 100000) - 50000, Quanta(random() % 100000) - 50000}};
@@ -20,7 +15,7 @@ inline void shuffleSeamlessCharts(Parametrization& map, std::mt19937& random) {
   }
 }
 
-inline double areaOf(const Parametrization& map) {
+double areaOf(const Parametrization& map) {
   double area = 0;
   for (const auto f : map.mesh.faces()) {
     const auto h = map.mesh.halfedge_handle(f);
@@ -30,8 +25,7 @@ inline double areaOf(const Parametrization& map) {
   return area;
 }
 
-/// The course of a real arc: legs follow each other, lie on the iso-line and add up to the length.
-inline void expectCourse(const Parametrization& map, const TMesh& tmesh, const TMesh::Arc& arc) {
+void expectCourse(const Parametrization& map, const TMesh& tmesh, const TMesh::Arc& arc) {
   if (arc.isVirtual) {
     EXPECT_TRUE(arc.legs.empty());
     return;
@@ -59,8 +53,7 @@ inline void expectCourse(const Parametrization& map, const TMesh& tmesh, const T
   EXPECT_LE(std::abs(sum - arc.length), Quanta(arc.legs.size()));
 }
 
-/// What a partition promises, counted anew; `verify` has held already.
-inline void expectPartition(const Parametrization& map, const TMesh& tmesh) {
+void expectPartition(const Parametrization& map, const TMesh& tmesh) {
   for (const auto& arc : tmesh.arcs) expectCourse(map, tmesh, arc);
   // Completed rectangles cover the surface: as much, where there is no virtual arc.
   double area = 0;
@@ -104,14 +97,14 @@ inline void expectPartition(const Parametrization& map, const TMesh& tmesh) {
     }
 }
 
-inline TMesh soundPartition(const Parametrization& map) {
+TMesh soundPartition(const Parametrization& map) {
   const Progress progress;
   TMesh tmesh = partition(map, progress);
   expectPartition(map, tmesh);
   return tmesh;
 }
 
-inline std::map<int, int> typesOf(const TMesh& tmesh) {
+std::map<int, int> typesOf(const TMesh& tmesh) {
   std::map<int, int> count;
   for (const auto& patch : tmesh.patches) ++count[patch.type];
   return count;

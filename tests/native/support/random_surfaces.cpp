@@ -1,13 +1,10 @@
-#pragma once
+#include "support/random_surfaces.h"
 
 #include <random>
 
-#include "quads/random_triangulation.h"
-#include "trimquad/tmesh/isoline.h"
-
 namespace trimquad::samples {
 
-inline bool connected(const SurfaceMesh& mesh) {
+bool connected(const SurfaceMesh& mesh) {
   std::vector<bool> reached(mesh.n_faces(), false);
   std::vector<FaceHandle> waiting{FaceHandle(0)};
   std::size_t count = 0;
@@ -26,9 +23,7 @@ inline bool connected(const SurfaceMesh& mesh) {
   return count == mesh.n_faces();
 }
 
-/// Takes out about `count` random triangles and their neighbours, as long as the rest stays a connected
-/// manifold.
-inline MappedSoup pierced(MappedSoup mapped, int count, std::mt19937& random) {
+MappedSoup pierced(MappedSoup mapped, int count, std::mt19937& random) {
   for (int k = 0; k < count && mapped.soup.triangles.size() > 4; ++k) {
     MappedSoup rest = mapped;
     const std::size_t t = random() % rest.soup.triangles.size();
@@ -51,9 +46,7 @@ inline MappedSoup pierced(MappedSoup mapped, int count, std::mt19937& random) {
   return mapped;
 }
 
-/// Moves the images of random vertices by whole multiples of `unit` quanta, where no triangle turns over.
-/// Singular vertices stay.
-inline void jitter(Parametrization& map, Quanta unit, int amplitude, std::mt19937& random) {
+void jitter(Parametrization& map, Quanta unit, int amplitude, std::mt19937& random) {
   const auto& mesh = map.mesh;
   const auto cones = coneQuarters(map);
   for (const auto v : mesh.vertices()) {
@@ -80,8 +73,7 @@ inline void jitter(Parametrization& map, Quanta unit, int amplitude, std::mt1993
   }
 }
 
-/// Random edges that lie along the axes become aligned, all of them that are one straight run or only some.
-inline void alignSome(Parametrization& map, unsigned oneIn, std::mt19937& random) {
+void alignSome(Parametrization& map, unsigned oneIn, std::mt19937& random) {
   for (const auto e : map.mesh.edges()) {
     const auto h = map.mesh.halfedge_handle(e, map.mesh.is_boundary(map.mesh.halfedge_handle(e, 0)) ? 1 : 0);
     const FixedVector d = map.to(h) - map.from(h);
@@ -89,14 +81,12 @@ inline void alignSome(Parametrization& map, unsigned oneIn, std::mt19937& random
   }
 }
 
-inline void markSome(Parametrization& map, unsigned oneIn, std::mt19937& random) {
+void markSome(Parametrization& map, unsigned oneIn, std::mt19937& random) {
   for (const auto v : map.mesh.vertices())
     if (!map.mesh.is_isolated(v) && random() % oneIn == 0) map.featurePoints.push_back(v);
 }
 
-/// A random plane domain with holes on a coarse lattice, so that iso-lines meet vertices and edges and each
-/// other.
-inline GridMap randomDomain(std::mt19937& random) {
+GridMap randomDomain(std::mt19937& random) {
   for (;;) {
     RandomTriangulation t{random, Quanta(1) << (random() % 8), {}, {}};
     const Quanta size = std::max<Quanta>(3, t.perQuad * Quanta(1 + random() % 5));
@@ -117,8 +107,7 @@ inline GridMap randomDomain(std::mt19937& random) {
   }
 }
 
-/// A cone, tube or torus with random holes and vertices moved about.
-inline GridMap randomSingularSurface(std::mt19937& random) {
+GridMap randomSingularSurface(std::mt19937& random) {
   MappedSoup mapped;
   const int n = 2 + int(random() % 8);
   switch (random() % 3) {

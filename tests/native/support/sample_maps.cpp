@@ -1,4 +1,4 @@
-#pragma once
+#include "support/sample_maps.h"
 
 #include <algorithm>
 #include <array>
@@ -8,22 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "trimquad/gridmap/grid_map.h"
-
 namespace trimquad::samples {
 
-/// Triangles with one chart position per corner, in quads.
-struct MappedSoup {
-  TriangleSoup soup;
-  std::vector<std::array<Eigen::Vector2d, 3>> corners;
-
-  void add(std::array<int, 3> triangle, std::array<Eigen::Vector2d, 3> corner) {
-    soup.triangles.push_back(triangle);
-    corners.push_back(corner);
-  }
-};
-
-inline GridMap gridMapOf(const MappedSoup& mapped, int bits = 24) {
+GridMap gridMapOf(const MappedSoup& mapped, int bits) {
   GridMap map;
   map.mesh = buildSurfaceMesh(mapped.soup);
   map.scale.bits = bits;
@@ -36,8 +23,7 @@ inline GridMap gridMapOf(const MappedSoup& mapped, int bits = 24) {
   return map;
 }
 
-/// A flat map: the chart is the plane of the points themselves.
-inline GridMap planarMap(const TriangleSoup& soup, int bits = 24) {
+GridMap planarMap(const TriangleSoup& soup, int bits) {
   MappedSoup mapped{soup, {}};
   for (const auto& t : soup.triangles)
     mapped.corners.push_back(
@@ -45,11 +31,8 @@ inline GridMap planarMap(const TriangleSoup& soup, int bits = 24) {
   return gridMapOf(mapped, bits);
 }
 
-/// columns x rows cells of two triangles each, without those that `leaveOut(i, j)`; positions by `place(i,
-/// j)`.
-inline TriangleSoup sheet(
-    int columns, int rows, const std::function<Eigen::Vector2d(int, int)>& place,
-    const std::function<bool(int, int)>& leaveOut = [](int, int) { return false; }) {
+TriangleSoup sheet(int columns, int rows, const std::function<Eigen::Vector2d(int, int)>& place,
+                   const std::function<bool(int, int)>& leaveOut) {
   TriangleSoup soup;
   std::vector<int> number((columns + 1) * (rows + 1), -1);
   const auto vertex = [&](int i, int j) {
@@ -71,9 +54,7 @@ inline TriangleSoup sheet(
   return soup;
 }
 
-/// `quarters` squares of side `width` quads around a grid point, each n x n cells in a chart of its own.
-/// `inner` cells next to the point are left out of every square.
-inline MappedSoup cone(int quarters, int n, double width, int inner = 0, Eigen::Vector2d apex = {0, 0}) {
+MappedSoup cone(int quarters, int n, double width, int inner, Eigen::Vector2d apex) {
   MappedSoup mapped;
   std::vector<int> number(size_t(quarters) * (n + 1) * (n + 1), -1);
   const auto vertex = [&](int q, int i, int j) {
@@ -102,10 +83,7 @@ inline MappedSoup cone(int quarters, int n, double width, int inner = 0, Eigen::
   return mapped;
 }
 
-/// A tube or torus: columns x rows cells of size `du` x `dv` quads, closed in u and perhaps in v. The map is
-/// moved by `offset`.
-inline MappedSoup wrapped(int columns, int rows, double du, double dv, bool torus,
-                          Eigen::Vector2d offset = {0, 0}) {
+MappedSoup wrapped(int columns, int rows, double du, double dv, bool torus, Eigen::Vector2d offset) {
   MappedSoup mapped;
   for (int j = 0; j < rows + !torus; ++j)
     for (int i = 0; i < columns; ++i) {
@@ -128,18 +106,8 @@ inline MappedSoup wrapped(int columns, int rows, double du, double dv, bool toru
   return mapped;
 }
 
-/// A rectangle left out of a sheet, in cells, around which the chart is shifted by a grid vector.
-struct ShiftedHole {
-  int column, row, columns, rows;
-  std::array<int, 2> shift;
-
-  Eigen::Vector2d center() const { return {column + columns / 2., row + rows / 2.}; }
-};
-
-/// n x n cells of side `step` quads with holes, turned and moved in the chart. Without a value where the
-/// shifts fold a triangle over.
-inline std::optional<GridMap> shiftedPlate(int n, const std::vector<ShiftedHole>& holes, double step,
-                                           Eigen::Vector2d offset, double turn = 0) {
+std::optional<GridMap> shiftedPlate(int n, const std::vector<ShiftedHole>& holes, double step,
+                                    Eigen::Vector2d offset, double turn) {
   const auto soup = sheet(
       n, n, [](int i, int j) { return Eigen::Vector2d(i, j); },
       [&](int i, int j) {
@@ -177,8 +145,7 @@ inline std::optional<GridMap> shiftedPlate(int n, const std::vector<ShiftedHole>
   return map;
 }
 
-/// The same map with every triangle in a chart of its own, turned and shifted by grid automorphisms.
-inline void shuffleCharts(GridMap& map, std::mt19937& random) {
+void shuffleCharts(GridMap& map, std::mt19937& random) {
   for (const auto f : map.mesh.faces()) {
     const Transition t{
         int(random() % 4),

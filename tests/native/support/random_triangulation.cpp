@@ -1,0 +1,5 @@
+#include "support/random_triangulation.h"
+
+#include <algorithm>
+
+namespace trimquad::samples {}  // namespace trimquad::samples
