@@ -18,6 +18,8 @@ from .texture import pattern_image
 # Stages keep to this part of the tolerance, so that what they add up to stays under it; by kind of input. Between curved
 # surfaces, deviations can only be measured up to the chord errors of both.
 FIT_MARGIN = {"cad": 0.55, "mesh": 0.75}
+# Part of its area that a divided mesh has surfaces of at least, to be kept where the whole has none.
+WORTH_DIVIDING = 0.25
 # Triangles per quad edge of the tessellation.
 TRIANGLES_PER_EDGE = 3
 
@@ -171,17 +173,27 @@ def _convert(source, options, progress):
 
 def _divided_where_that_helps(whole, mesh, progress):
     """The Result of a mesh in which surfaces cannot follow sharp edges inside a region: divided along all of them, if all
-    regions are converted then, or some where none of the whole is. Else that of the whole, over other maps."""
+    regions are converted then, or a good part of their area where nothing of the whole is. Else that of the whole, over
+    other maps."""
     divided = _divided(whole, mesh, progress)
     if divided is not None:
-        trim(divided, progress)
-        if not divided.failed:
-            return divided
+        if _converted_part(divided) >= WORTH_DIVIDING:
+            trim(divided, progress)
+            if not divided.failed:
+                return divided
         whole.work_in_vain = divided.work
         whole.exhausted = divided.work > MOST_WORK_BEFORE_CUT
     fit_undivided(whole, progress)
     trim(whole, progress)
-    return whole if divided is None or divided.spline is None or whole.spline is not None else divided
+    if divided is None or divided.spline is None or whole.spline is not None:
+        return whole
+    return divided if _converted_part(divided) >= WORTH_DIVIDING else whole
+
+
+def _converted_part(result):
+    """Of the area of all regions, that of those that have not failed."""
+    converted = sum(item.region.area for item in result.regions if item.error is None)
+    return converted / sum(item.region.area for item in result.regions)
 
 
 def _divided(whole, mesh, progress):

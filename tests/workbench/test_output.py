@@ -336,7 +336,8 @@ def test_a_mesh_that_cannot_be_fitted_when_it_is_divided_either_is_told_of_as_a_
     assert not any("divided" in line for line in result.warnings)
 
 
-def test_what_can_be_fitted_of_a_divided_mesh_is_better_than_nothing(monkeypatch):
+@pytest.mark.parametrize("least, kept", [(0.25, True), (0.75, False)])
+def test_what_can_be_fitted_of_a_divided_mesh_is_better_than_nothing_if_it_is_a_good_part(monkeypatch, least, kept):
     class Half(_NoCreases):
         def fit_surface(self, region, *rest):
             if region.features["aligned_edges"] or region.name.endswith("part 1"):
@@ -347,6 +348,10 @@ def test_what_can_be_fitted_of_a_divided_mesh_is_better_than_nothing(monkeypatch
     native = Half(module.load())
     monkeypatch.setattr(module, "load", lambda: native)
     monkeypatch.setattr(module, "_without_creases", lambda item, result: None)
+    monkeypatch.setattr(sys.modules["trimquad.convert"], "WORTH_DIVIDING", least)
     result = trimquad.convert(_folded_sheet(), trimquad.Options(quads=100))
+    if not kept:
+        assert result.failed == result.regions and result.report["options"]["features"] == "align"
+        return
     assert [region.name for region in result.failed] == ["component 0 part 1"]
     assert len(result.shape.Faces) == 1

@@ -14,19 +14,26 @@ constexpr double kResidualLeft = 1e-3;
 }  // namespace
 
 void SlidingData::add(const Datum& datum, const Eigen::Vector3d& point,
-                      std::vector<std::pair<int, double>> terms) {
+                      const std::vector<std::pair<int, double>>& terms) {
   if (datum.free.isZero()) return;
-  rows_.push_back({std::move(terms), point, datum.weight * (1 - kSlidingCounts) * datum.free});
+  terms_.insert(terms_.end(), terms.begin(), terms.end());
+  rows_.push_back({terms_.size(), point, datum.weight * (1 - kSlidingCounts) * datum.free});
 }
 
 Eigen::MatrixXd SlidingData::lost(const Eigen::MatrixXd& x, bool lessPoints) const {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(x.rows(), 3);
+  // The three coordinates of an unknown side by side in memory.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const Rows from = x;
+  Rows result = Rows::Zero(x.rows(), 3);
+  auto begin = terms_.begin();
   for (const auto& row : rows_) {
+    const auto end = terms_.begin() + std::ptrdiff_t(row.end);
     Eigen::RowVector3d at = Eigen::RowVector3d::Zero();
-    for (const auto& [i, value] : row.terms) at += value * x.row(i);
+    for (auto term = begin; term != end; ++term) at += term->second * from.row(term->first);
     if (lessPoints) at -= row.point.transpose();
     const Eigen::RowVector3d part = at * row.lost;
-    for (const auto& [i, value] : row.terms) result.row(i) += value * part;
+    for (auto term = begin; term != end; ++term) result.row(term->first) += term->second * part;
+    begin = end;
   }
   return result;
 }

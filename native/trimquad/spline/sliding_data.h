@@ -19,7 +19,8 @@ class SlidingData {
   /// Ignores a datum that is not free.
   /// \param terms unknowns and the values of their functions at the datum's parameter
   /// \param point relative to the origin of the unknowns' coordinates
-  void add(const Datum& datum, const Eigen::Vector3d& point, std::vector<std::pair<int, double>> terms);
+  void add(const Datum& datum, const Eigen::Vector3d& point,
+           const std::vector<std::pair<int, double>>& terms);
 
   /// \param x     the minimum where all of the distances count, unknowns by 3
   /// \param solve by that problem's matrix, of any right-hand side
@@ -29,7 +30,7 @@ class SlidingData {
 
  private:
   struct Row {
-    std::vector<std::pair<int, double>> terms;
+    std::size_t end;  ///< of its terms in terms_, which begin where those of the row before end
     Eigen::Vector3d point;
     Eigen::Matrix3d lost;  ///< what the quadratic loses
   };
@@ -37,6 +38,7 @@ class SlidingData {
   Eigen::MatrixXd lost(const Eigen::MatrixXd& x, bool lessPoints) const;
 
   std::vector<Row> rows_;
+  std::vector<std::pair<int, double>> terms_;
 };
 
 }  // namespace trimquad

@@ -241,17 +241,18 @@ void SplineSpace::addSliding(const std::vector<Datum>& data, const Eigen::Vector
                              const Number& number, SlidingData& sliding) const {
   const auto knotsU = u.knots(), knotsV = v.knots();
   BasisFunctions bu, bv;
+  std::vector<std::pair<int, double>> terms;
   for (const Datum& d : data) {
     if (d.free.isZero()) continue;
     basisFunctions(knotsU, u.degree, d.parameter[0], 0, bu);
     basisFunctions(knotsV, v.degree, d.parameter[1], 0, bv);
-    std::vector<std::pair<int, double>> terms;
+    terms.clear();
     for (int b = 0; b <= v.degree; ++b)
       for (int a = 0; a <= u.degree; ++a) {
         const int i = u.closed ? (bu.first + a) % u.unknowns() : bu.first + a;
         terms.emplace_back(number(i, bv.first + b), bu.value[0][a] * bv.value[0][b]);
       }
-    sliding.add(d, d.point - middle, std::move(terms));
+    sliding.add(d, d.point - middle, terms);
   }
 }
 

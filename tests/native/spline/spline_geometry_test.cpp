@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -54,6 +55,28 @@ TEST(SplineGeometry, basisIsAPartitionOfUnityAndItsDerivativesVanishInSum) {
         double sum = 0, size = 1;
         for (int j = 0; j <= degree; ++j) sum += b.value[k][j], size += std::abs(b.value[k][j]);
         EXPECT_NEAR(sum, k == 0, 1e-13 * size) << degree << " " << t << " " << k;
+      }
+    }
+  }
+}
+
+TEST(SplineGeometry, basisHasTheSameDerivativesWhateverTheirHighestOrder) {
+  for (int degree = 2; degree <= 9; ++degree) {
+    auto knots = clampedKnots(degree, {0, 1, 1.5, 4, 7});
+    knots.insert(std::find(knots.begin(), knots.end(), 1.5), degree - 1, 1.5);  // a corner
+    for (double t : {0.0, 0.3, 1.0, 1.49, 1.5, 3.9, 4.0, 7.0, -0.5, 7.5}) {
+      BasisFunctions all;
+      basisFunctions(knots, degree, t, 3, all);
+      for (int order = 0; order <= 2; ++order) {
+        BasisFunctions some;
+        basisFunctions(knots, degree, t, order, some);
+        EXPECT_EQ(some.first, all.first);
+        for (int k = 0; k <= order; ++k) {
+          double size = 1;
+          for (int j = 0; j <= degree; ++j) size = std::max(size, std::abs(all.value[k][j]));
+          for (int j = 0; j <= degree; ++j)
+            EXPECT_NEAR(some.value[k][j], all.value[k][j], 1e-13 * size) << degree << " " << t << " " << k;
+        }
       }
     }
   }

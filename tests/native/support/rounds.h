@@ -2,13 +2,17 @@
 
 namespace trimquad::sample {
 
+/// Whether sanitizers make everything twenty times slower.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 /// How many random inputs a test takes: `full` of them, a twentieth where sanitizers slow each one down.
 constexpr unsigned rounds(unsigned full) {
-#if defined(__SANITIZE_ADDRESS__)
+  if (!kSanitized) return full;
   return full / 20 > 4 ? full / 20 : 4;
-#else
-  return full;
-#endif
 }
 
 }  // namespace trimquad::sample
