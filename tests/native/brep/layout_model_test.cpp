@@ -5,9 +5,9 @@
 #include <numbers>
 
 // Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
-#include "support/sample_maps.h"
 #include "support/analytic_region.h"
 #include "support/grid_maps.h"
+#include "support/sample_maps.h"
 #include "trimquad/spline/trim_model.h"
 
 #include <BRepGProp.hxx>

@@ -7,10 +7,10 @@
 #include <numbers>
 
 // Before OpenCASCADE, whose macro Handle() breaks OpenMesh.
-#include "support/sample_maps.h"
 #include "support/analytic_region.h"
 #include "support/fit_figures.h"
 #include "support/grid_maps.h"
+#include "support/sample_maps.h"
 #include "trimquad/mesh/polyline_curve.h"
 #include "trimquad/spline/trim_model.h"
 

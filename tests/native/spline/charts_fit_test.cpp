@@ -7,9 +7,9 @@
 #include <random>
 #include <regex>
 
-#include "support/sample_maps.h"
 #include "support/analytic_region.h"
 #include "support/fit_figures.h"
+#include "support/sample_maps.h"
 #include "trimquad/base/error.h"
 
 namespace trimquad {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "support/sample_maps.h"
 #include "support/grid_maps.h"
+#include "support/sample_maps.h"
 
 namespace trimquad {
 namespace {
