@@ -154,7 +154,7 @@ def _refit(item, charts, error, result, progress):
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     try:
-        if regions.exhausted(item, result, progress, _part_at_fault(item, charts)):
+        if regions.exhausted(item, result, progress):
             raise error
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):
@@ -178,11 +178,6 @@ def _refit(item, charts, error, result, progress):
             return
         item.fitted = None
         item.error = failure
-
-
-def _part_at_fault(item, charts):
-    """Of the surfaces of a region; 1 where its edges are."""
-    return len(charts) / len(item.fitted.deviations) if charts else 1.0
 
 
 def _applies(way, item, charts):

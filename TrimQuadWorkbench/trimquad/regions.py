@@ -18,8 +18,6 @@ MORE_POLES, FEW_POLES = 5, 1000
 # Work of a region's fits after which no other ways of fitting it are tried; less where it can be cut instead. And the same
 # for a whole model. 1e6 steps take about half a second. Work rather than time, so that results do not depend on the machine.
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
-# The same for a region of which at most this part of the surfaces is at fault: most of its refits leave few, and one none.
-MOST_WORK_FOR_FEW, FEW = 100e6, 0.05
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map.
 MOST_WORK_BEFORE_CHOICE = 8e6
 # Times that the edges of a region's quads are halved where it is too narrow for them.
@@ -327,13 +325,9 @@ def _fit_from(item, other):
     item.refits, item.bisections, item.smoothings = 0, [], {}
 
 
-def exhausted(item, result, progress, at_fault=1.0):
-    """Whether fits took so much work that no other ways of fitting a region are to be tried.
-
-    at_fault: the part of its surfaces that is
-    """
-    most = MOST_WORK_FOR_FEW if at_fault <= FEW else MOST_WORK
-    if result.exhausted or item.work + result.work_in_vain > most:
+def exhausted(item, result, progress):
+    """Whether fits took so much work that no other ways of fitting a region are to be tried."""
+    if result.exhausted or item.work + result.work_in_vain > MOST_WORK:
         return True
     return item.work > MOST_WORK_BEFORE_CUT and has_parts(item, result, progress)
 
