@@ -185,9 +185,8 @@ def _divided_where_that_helps(whole, mesh, progress):
         whole.exhausted = divided.work > MOST_WORK_BEFORE_CUT
     fit_undivided(whole, progress)
     trim(whole, progress)
-    if divided is None or divided.spline is None or whole.spline is not None:
-        return whole
-    return divided if _converted_part(divided) >= WORTH_DIVIDING else whole
+    better = whole.spline is None and divided is not None and divided.spline is not None
+    return divided if better and _converted_part(divided) >= WORTH_DIVIDING else whole
 
 
 def _converted_part(result):

@@ -106,14 +106,15 @@ def test_a_region_that_fails_does_not_stop_the_others(tmp_path, capsys):
 
     seed = 7
     random = numpy.random.default_rng(seed)
-    places = [(i, j) for i in range(4) for j in range(4)]
+    n = 4
+    places = [(i, j) for i in range(n) for j in range(n)]
     crumpled = [(i, j, random.uniform(-0.7, 0.7)) for i, j in places]
     flat = [(i + 20, j, 0) for i, j in places]
-    cells = [4 * i + j for i in range(3) for j in range(3)]
-    triangles = [t for a in cells for t in ((a, a + 4, a + 5), (a, a + 5, a + 1))]
+    cells = [n * i + j for i in range(n - 1) for j in range(n - 1)]
+    triangles = [t for a in cells for t in ((a, a + n, a + n + 1), (a, a + n + 1, a + 1))]
     path = tmp_path / "both.obj"
     lines = [f"v {x} {y} {z}" for x, y, z in crumpled + flat]
-    lines += [f"f {a + 1 + n} {b + 1 + n} {c + 1 + n}" for n in (0, 16) for a, b, c in triangles]
+    lines += [f"f {a + k} {b + k} {c + k}" for k in (1, 1 + n * n) for a, b, c in triangles]
     path.write_text("\n".join(lines) + "\n")
     status = cli.main(["convert", str(path), "--out", str(tmp_path / "out"), "--quads", "60", "--features", "ignore",
                        "--relative-tolerance", "1e-5", "--quiet"])

@@ -69,9 +69,8 @@ void basisFunctionsOfAnyOrder(std::span<const double> knots, int degree, double 
     for (int j = 0; j <= degree; ++j) result.value[k][j] = 0;
 }
 
-/// Up to second derivatives: most of the time of a fit goes here. A function's derivatives are differences of
-/// those of the degrees below, which the recursion passes on its way. \tparam Degree, Order where the
-/// compiler is to know them
+/// The same up to second derivatives, where most of the time of a fit goes: a function's derivatives are
+/// differences of those of the degrees below, which the recursion passes on its way.
 template <int Degree, int Order>
 void basisFunctionsOf(std::span<const double> knots, double t, BasisFunctions& result) {
   static_assert(Order <= 2 && Order <= Degree);
@@ -142,7 +141,7 @@ void basisFunctions(std::span<const double> knots, int degree, double t, int ord
       return basisFunctionsOfDegree<4>(knots, t, order, result);
     case 5:
       return basisFunctionsOfDegree<5>(knots, t, order, result);
-    case 9:
+    case 9:  // edges in space
       return basisFunctionsOfDegree<9>(knots, t, order, result);
     default:
       return basisFunctionsOfAnyOrder(knots, degree, t, order, result);

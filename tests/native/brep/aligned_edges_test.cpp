@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "support/error_of.h"
 #include "trimquad/base/error.h"
 #include "trimquad/brep/tessellate.h"
 #include "trimquad/mesh/feature_graph.h"
@@ -30,15 +31,6 @@ using Sharp = FeatureOptions::Sharp;
 Model tessellated(const TopoDS_Shape& shape, FeatureOptions features, double edgeLength = 0.3) {
   features.quadLength = 3 * edgeLength;
   return tessellate(Shape(shape), {edgeLength, 0.02, features}, Progress());
-}
-
-std::optional<Error> errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  return {};
 }
 
 double alignedLength(const Region& region) {

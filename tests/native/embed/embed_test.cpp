@@ -3,6 +3,7 @@
 
 #include "support/random_surfaces.h"
 #include "support/tmesh_checks.h"
+#include "trimquad/base/error.h"
 #include "trimquad/mesh/collapse_edge.h"
 
 using namespace trimquad;

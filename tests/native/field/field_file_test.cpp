@@ -9,7 +9,7 @@
 #include <optional>
 #include <random>
 
-#include "trimquad/base/error.h"
+#include "support/error_of.h"
 #include "trimquad/mesh/mesh_model.h"
 
 namespace trimquad {
@@ -32,12 +32,7 @@ class FieldFiles : public testing::Test {
   }
 
   std::optional<Error> errorOf(const std::string& name, const std::string& text) const {
-    try {
-      read(name, text);
-    } catch (const Error& error) {
-      return error;
-    }
-    return {};
+    return trimquad::errorOf([&] { read(name, text); });
   }
 
  private:

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 #include "trimquad/mesh/mesh_model.h"
 #include "trimquad/mesh/split_triangles.h"

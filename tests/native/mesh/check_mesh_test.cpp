@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 
 namespace trimquad {

@@ -1,6 +1,7 @@
 #include <chrono>
 
 #include "mesh_file_samples.h"
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 #include "trimquad/mesh/check_mesh.h"
 

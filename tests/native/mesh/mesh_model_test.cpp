@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 
 namespace trimquad {

@@ -1,5 +1,6 @@
 #include "trimquad/mesh/polyline_curve.h"
 
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 
 namespace trimquad {

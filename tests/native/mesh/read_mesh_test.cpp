@@ -3,6 +3,7 @@
 #include <locale>
 
 #include "mesh_file_samples.h"
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 #include "trimquad/mesh/polygon.h"
 

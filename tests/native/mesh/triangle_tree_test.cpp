@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 
+#include "support/error_of.h"
 #include "support/mesh_samples.h"
 #include "trimquad/mesh/aabb_tree.h"
 

@@ -4,6 +4,7 @@
 
 #include "quad_checks.h"
 #include "support/random_triangulation.h"
+#include "support/sample_maps.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;
@@ -24,18 +25,6 @@ GridMap turnedBy45(double radius) {
                            return Eigen::Vector2d(a - b, a + b);
                          }),
                    40);
-}
-
-GridMap randomMap(std::mt19937& random) {
-  RandomTriangulation t{random, Quanta(1) << (random() % 8), {}, {}};
-  const Quanta size = std::max<Quanta>(3, t.perQuad * Quanta(1 + random() % 5));
-  t.start(size);
-  for (int k = int(random() % 60); k > 0; --k) {
-    const unsigned what = random() % 10;
-    what < 5 ? t.insert() : what < 8 ? t.flip() : t.grow(size);
-  }
-  for (int k = int(random() % 6); k > 0; --k) t.pierce();
-  return t.map();
 }
 
 QuadMesh extract(const GridMap& map) {
@@ -149,7 +138,7 @@ TEST(MergeSlivers, randomMapsStayManifoldAndOtherCellsAsTheyWere) {
   for (unsigned seed = 0; seed < 1500 && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    const GridMap map = randomMap(random);
+    const GridMap map = randomTriangulation(random, 60, 6);
     QuadMesh quads = extract(map);
     const QuadMesh before = quads;
     const int merged = mergeSlivers(quads, 0.05 + 0.3 * double(random() % 4));
@@ -203,7 +192,7 @@ TEST(VanishingCells, randomMapsThatAllButTouchGridLinesAreSound) {
   for (unsigned seed = 0; seed < 1500 && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    GridMap map = randomMap(random);
+    GridMap map = randomTriangulation(random, 60, 6);
     // Vertices on grid lines come to lie beside them.
     const int shift = 40 - map.scale.bits;
     for (auto& x : map.corner) x = {x.u << shift, x.v << shift};

@@ -5,6 +5,7 @@
 
 #include "quad_checks.h"
 #include "support/random_triangulation.h"
+#include "support/sample_maps.h"
 
 using namespace trimquad;
 using namespace trimquad::samples;
@@ -77,22 +78,7 @@ bool touch(const ShiftedHole& a, const ShiftedHole& b) {
 void checkRandomMap(unsigned seed) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  RandomTriangulation t{random, Quanta(1) << (random() % 8), {}, {}};
-  const Quanta size = std::max<Quanta>(3, t.perQuad * Quanta(1 + random() % 5));
-  t.start(size);
-  const int steps = int(random() % 60);
-  for (int k = 0; k < steps; ++k) {
-    const unsigned what = random() % 10;
-    if (what < 5)
-      t.insert();
-    else if (what < 8)
-      t.flip();
-    else
-      t.grow(size);
-  }
-  for (int k = int(random() % 6); k > 0; --k) t.pierce();
-
-  GridMap map = t.map();
+  GridMap map = randomTriangulation(random, 60, 6);
   shuffleCharts(map, random);
   std::vector<VertexHandle> corners;
   for (const auto v : map.mesh.vertices())

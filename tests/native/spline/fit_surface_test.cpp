@@ -70,9 +70,10 @@ FittedSurface fit(AnalyticRegion& a, double tolerance, int degree = 3) {
 TEST(FitSurface, wavySheetMeetsTheToleranceWithFewPoles) {
   auto sheet = wavySheet();
   EXPECT_LE(fit(sheet, 3e-4).surface.poles.size(), 180u);
-  if (sample::kSanitized) return;
-  EXPECT_LE(fit(sheet, 2e-5).surface.poles.size(), 700u);
-  for (int degree : {2, 4, 5}) fit(sheet, 1e-4, degree);
+  if (!sample::kSanitized) {
+    EXPECT_LE(fit(sheet, 2e-5).surface.poles.size(), 700u);
+  }
+  for (int degree : {2, 4, 5}) fit(sheet, sample::kSanitized ? 1e-3 : 1e-4, degree);
 }
 
 /// The top of a sphere down to 75 degrees, over a disk of the plane by the azimuthal equidistant map.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "trimquad/gridmap/grid_map.h"
 #include "trimquad/mesh/region.h"

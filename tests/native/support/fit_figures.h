@@ -1,11 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "trimquad/gridmap/grid_map.h"
 #include "trimquad/spline/fit_surface.h"
 

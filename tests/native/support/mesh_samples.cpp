@@ -1,23 +1,6 @@
 #include "support/mesh_samples.h"
 
-#include <gtest/gtest.h>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <numbers>
-#include <optional>
-#include <random>
-
 namespace trimquad {
-
-std::optional<Error> errorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  return {};
-}
 
 TriangleSoup sheet(int columns, int rows, const std::function<Eigen::Vector3d(double, double)>& surface) {
   TriangleSoup soup;

@@ -6,18 +6,13 @@
 #include <functional>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <random>
 
-#include "trimquad/base/error.h"
 #include "trimquad/mesh/surface_mesh.h"
 
 namespace trimquad {
 
 inline constexpr double kPi = std::numbers::pi;
-
-/// The error that `action` throws.
-std::optional<Error> errorOf(const std::function<void()>& action);
 
 /// columns x rows squares, each cut in two triangles, at surface(i, j); i runs from 0 to columns, j from 0 to
 /// rows.

@@ -1,6 +1,9 @@
 #include "support/random_surfaces.h"
 
-#include <random>
+#include <vector>
+
+#include "support/random_triangulation.h"
+#include "trimquad/base/error.h"
 
 namespace trimquad::samples {
 
@@ -88,21 +91,7 @@ void markSome(Parametrization& map, unsigned oneIn, std::mt19937& random) {
 
 GridMap randomDomain(std::mt19937& random) {
   for (;;) {
-    RandomTriangulation t{random, Quanta(1) << (random() % 8), {}, {}};
-    const Quanta size = std::max<Quanta>(3, t.perQuad * Quanta(1 + random() % 5));
-    t.start(size);
-    const int steps = int(random() % 90);
-    for (int k = 0; k < steps; ++k) {
-      const unsigned what = random() % 10;
-      if (what < 5)
-        t.insert();
-      else if (what < 8)
-        t.flip();
-      else
-        t.grow(size);
-    }
-    for (int k = int(random() % 8); k > 0; --k) t.pierce();
-    GridMap map = t.map();
+    GridMap map = randomTriangulation(random, 90, 8);
     if (connected(map.mesh)) return map;
   }
 }

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "support/random_triangulation.h"
+#include "support/sample_maps.h"
 #include "trimquad/tmesh/isoline.h"
 
 namespace trimquad::samples {

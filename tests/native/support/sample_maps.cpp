@@ -1,13 +1,5 @@
 #include "support/sample_maps.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <optional>
-#include <random>
-#include <vector>
-
 namespace trimquad::samples {
 
 GridMap gridMapOf(const MappedSoup& mapped, int bits) {

@@ -1,10 +1,5 @@
 #include "support/tmesh_checks.h"
 
-#include <gtest/gtest.h>
-#include <map>
-#include <random>
-#include <set>
-
 namespace trimquad {
 
 void shuffleSeamlessCharts(Parametrization& map, std::mt19937& random) {
