@@ -9,17 +9,20 @@ from .native import load
 
 # A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
 # again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), with the
-# parameters closer to the map's, with both, cut in two where it bends most, smoother as far as the tolerance allows (one of
-# several; the others stay as they are, so that fewer are at fault each time), to this part of the tolerance.
+# parameters closer to the map's, with both, smoother as far as the tolerance allows or closer, over more knots (one of several;
+# the others stay as they are), cut in two where it bends most (all of the region's are fitted again), to this part of the
+# tolerance.
+REVISIONS = ({"smoother": True}, {"smoother": True}, {"smoother": False}, {"smoother": True}, {"smoother": True},
+             {"smoother": False})
 REFITS = (
     {"smallest_rectangle": True},
     {"slides": False},
     {"smallest_rectangle": True, "slides": False},
+    *REVISIONS,
     {"cut": True},
-    {"cut": True, "smoother": True},
-    {"cut": True, "smoother": True},
-    {"smoother": True},
-    {"smoother": True},
+    *REVISIONS,
+    {"cut": True},
+    *REVISIONS,
     {"part": 0.4},
     {"part": 0.16},
 )
@@ -151,24 +154,36 @@ def _refit(item, charts, error, result, progress):
 
     charts: those whose faces are at fault; empty where the region's edges are, many of which small holes have
     """
+    if not charts and item.before_revision:
+        # Revised, it cannot be trimmed.
+        item.fitted, charts, error = item.before_revision
+    item.before_revision = None
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     try:
-        if regions.exhausted(item, result, progress):
-            raise error
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):
             item.refits += 1
         if item.refits > len(REFITS):
             raise error
         way = dict(REFITS[item.refits - 1])
+        if "smoother" not in way and regions.exhausted(item, result, progress):
+            raise error
+        if "smoother" in way:
+            if way["smoother"]:
+                for chart in charts:
+                    item.smoothings[chart] = item.smoothings.get(chart, 0) + STEPS
+            with progress.stage("fit", item.name) as native_progress:
+                fitted = regions.revised(item, sorted(charts), result, native_progress, **way)
+            if fitted is None:
+                _refit(item, charts, error, result, progress)
+            else:
+                item.before_revision = item.fitted, charts, error
+                item.fitted = fitted
+            return
         if way.pop("cut", False):
             item.bisections = [*item.bisections, sorted(charts)]
-            for chart in charts:
-                item.smoothings.setdefault(chart, 0)
-        if way.pop("smoother", False):
-            for chart in charts:
-                item.smoothings[chart] = item.smoothings.get(chart, 0) + STEPS
+            item.smoothings = {}
         with progress.stage("fit", item.name) as native_progress:
             item.fitted = regions.fit(item, result, native_progress, **way)
     except Error as failure:

@@ -19,7 +19,7 @@ MORE_POLES, FEW_POLES = 5, 1000
 # for a whole model. 1e6 steps take about half a second. Work rather than time, so that results do not depend on the machine.
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map.
-MOST_WORK_BEFORE_CHOICE = 8e6
+MOST_WORK_BEFORE_CHOICE = 5e6
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
@@ -81,6 +81,7 @@ class RegionResult:
         self.put_aside = {}  # surfaces over another map that may still be taken: by map, its RegionResult and mesh
         self.bisections = []  # by round: charts cut in two because their faces were at fault
         self.smoothings = {}  # by chart: in how many steps its surface is made smoother, for the same reason
+        self.before_revision = None  # surfaces before some of them were, the charts and why
         self.seconds = {}
         self.work = 0  # of its fits: samples whose feet were looked for
         self.may_be_divided = False  # along its sharp edges, as it failed
@@ -322,7 +323,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
 def _fit_from(item, other):
     """Takes the surfaces over another map as those of a region."""
     item.fitted, item.fitted_from = other.fitted, other
-    item.refits, item.bisections, item.smoothings = 0, [], {}
+    item.refits, item.bisections, item.smoothings, item.before_revision = 0, [], {}, None
 
 
 def exhausted(item, result, progress):
@@ -423,21 +424,47 @@ def _polygonal(quads, item, options):
 def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0, only=True):
     """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
     for `only`. A part is given up where it takes many more poles than the surfaces have now."""
-    options = result.options
     native = load()
     tolerance = part * result.fit_tolerance
-    fit_options = native.FitOptions(
+    fit_options = _fit_options(
+        item,
+        result,
         tolerance=tolerance,
-        enough=tolerance if only and part != 1 else ENOUGH * options.tolerance,
+        enough=tolerance if only and part != 1 else ENOUGH * result.options.tolerance,
         smallest_rectangle=smallest_rectangle,
-        bisections=item.bisections,
-        smoothings=item.smoothings,
-        degree=options.degree,
         slides=slides,
-        threads=max(1, options.threads // len(result.regions)),
         max_poles=None if part == 1 else MORE_POLES * item.fitted.control_points + FEW_POLES,
     )
     try:
         return native.fit_surface(item.fitted_from.mapped_region, item.fitted_from.grid, fit_options, progress)
     finally:
         item.work += progress.work
+
+
+def revised(item, charts, result, progress, smoother):
+    """Surfaces of a region of which those of some charts are smoother, in item.smoothings' steps, or else closer; the others
+    are the same. None where no such ones are within the tolerance."""
+    native = load()
+    fit_options = _fit_options(
+        item,
+        result,
+        tolerance=result.fit_tolerance,
+        enough=ENOUGH * result.options.tolerance,
+    )
+    source = item.fitted_from
+    arguments = source.mapped_region, source.grid, fit_options, progress
+    if smoother:
+        return native.smoothed_charts(item.fitted, {chart: item.smoothings[chart] for chart in charts}, *arguments)
+    return native.closer_charts(item.fitted, charts, *arguments)
+
+
+def _fit_options(item, result, smallest_rectangle=False, slides=True, max_poles=None, **tolerances):
+    return load().FitOptions(
+        smallest_rectangle=smallest_rectangle,
+        bisections=item.bisections,
+        degree=result.options.degree,
+        slides=slides,
+        threads=max(1, result.options.threads // len(result.regions)),
+        max_poles=max_poles,
+        **tolerances,
+    )

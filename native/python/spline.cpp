@@ -67,19 +67,22 @@ void bindSpline(py::module_& m) {
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")
       .def(py::init([](double tolerance, double enough, bool smallestRectangle,
-                       std::vector<std::vector<int>> bisections, std::map<int, int> smoothings, int degree,
-                       bool slides, int threads, std::optional<int> maxPoles) {
-             FitOptions options{
-                 tolerance, enough, smallestRectangle, std::move(bisections), std::move(smoothings), degree,
-                 slides,    threads};
+                       std::vector<std::vector<int>> bisections, int degree, bool slides, int threads,
+                       std::optional<int> maxPoles) {
+             FitOptions options{tolerance, enough, smallestRectangle, std::move(bisections), degree,
+                                slides,    threads};
              if (maxPoles) options.maxPoles = *maxPoles;
              return options;
            }),
            py::kw_only(), py::arg("tolerance"), py::arg("enough"), py::arg("smallest_rectangle"),
-           py::arg("bisections"), py::arg("smoothings"), py::arg("degree"), py::arg("slides"),
-           py::arg("threads"), py::arg("max_poles"));
+           py::arg("bisections"), py::arg("degree"), py::arg("slides"), py::arg("threads"),
+           py::arg("max_poles"));
   m.def("fit_surface", &fitSurface, py::arg("region"), py::arg("grid"), py::arg("options"),
         py::arg("progress"), Released());
+  m.def("closer_charts", &closerCharts, py::arg("fitted"), py::arg("charts"), py::arg("region"),
+        py::arg("grid"), py::arg("options"), py::arg("progress"), Released());
+  m.def("smoothed_charts", &smoothedCharts, py::arg("fitted"), py::arg("steps"), py::arg("region"),
+        py::arg("grid"), py::arg("options"), py::arg("progress"), Released());
 
   py::class_<SplineModel>(m, "SplineModel")
       .def_readonly("loose_edges", &SplineModel::looseEdges)

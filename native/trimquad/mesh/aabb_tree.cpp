@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 constexpr int kLeafSize = 4;
 /// Median splits halve the number of triangles, so that 64 levels hold any number of them.
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr int kStackSize = 64;
 
 /// Share of the way from a to b at which the segment is closest to p.
@@ -116,7 +117,8 @@ void TriangleTree::build(int first, int last, const std::vector<Vector3d>& cente
 }
 
 template <typename Accept>
-std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, const Accept& accept) const {
+std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, double squaredDistance,
+                                                      const Accept& accept) const {
   struct Entry {
     int node;
     double squaredDistance;
@@ -124,10 +126,12 @@ std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, const A
   std::array<Entry, kStackSize> stack;
   int depth = 0;
   stack[depth++] = {0, squaredDistanceToBox(p, nodes_[0].low, nodes_[0].high)};
-  Hit best{-1, p, Vector3d::Zero(), std::numeric_limits<double>::infinity()};
+  Hit best{-1, p, Vector3d::Zero(), squaredDistance};
   while (depth > 0) {
     const Entry entry = stack[--depth];
-    if (best.triangle >= 0 && entry.squaredDistance >= best.squaredDistance) continue;
+    if (entry.squaredDistance > best.squaredDistance ||
+        (best.triangle >= 0 && entry.squaredDistance == best.squaredDistance))
+      continue;
     const Node& node = nodes_[entry.node];
     for (int i = node.first; i < node.first + node.count; ++i) {
       const auto& t = triangles_[order_[i]];
@@ -136,7 +140,7 @@ std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, const A
       const Vector3d barycentric = closestOnTriangle(p, a, b, c);
       const Vector3d point = barycentric[0] * a + barycentric[1] * b + barycentric[2] * c;
       const double squared = (point - p).squaredNorm();
-      if (best.triangle < 0 || squared < best.squaredDistance)
+      if (squared < best.squaredDistance || (best.triangle < 0 && squared == best.squaredDistance))
         best = {order_[i], point, barycentric, squared};
     }
     if (node.count > 0) continue;
@@ -152,14 +156,22 @@ std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, const A
 }
 
 TriangleTree::Hit TriangleTree::closest(const Vector3d& p) const {
-  return *search(p, [](const Vector3d&, const Vector3d&, const Vector3d&) { return true; });
+  return *search(p, kAnywhere, [](const Vector3d&, const Vector3d&, const Vector3d&) { return true; });
 }
 
 std::optional<TriangleTree::Hit> TriangleTree::closestFacing(const Vector3d& p,
                                                              const Vector3d& facing) const {
   if (facing.isZero(0)) return std::nullopt;  // which no triangle faces, as a search through all would find
-  return search(p, [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return search(p, kAnywhere, [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     return (b - a).cross(c - a).dot(facing) > 0;
+  });
+}
+
+std::optional<TriangleTree::Hit> TriangleTree::closestFacing(const Vector3d& p, const Vector3d& facing,
+                                                             double distance) const {
+  return search(p, distance * distance, [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    const Vector3d normal = (b - a).cross(c - a);
+    return normal.dot(facing) > M_SQRT1_2 * normal.norm();
   });
 }
 

@@ -30,6 +30,11 @@ class TriangleTree {
   /// there are none. Tells the two sides of a thin part apart.
   std::optional<Hit> closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d& facing) const;
 
+  /// The same on those within a distance whose normals make less than half a right angle with the unit vector
+  /// `facing`.
+  std::optional<Hit> closestFacing(const Eigen::Vector3d& p, const Eigen::Vector3d& facing,
+                                   double distance) const;
+
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
 
@@ -42,7 +47,7 @@ class TriangleTree {
   };
 
   template <typename Accept>
-  std::optional<Hit> search(const Eigen::Vector3d& p, const Accept& accept) const;
+  std::optional<Hit> search(const Eigen::Vector3d& p, double squaredDistance, const Accept& accept) const;
   void build(int first, int last, const std::vector<Eigen::Vector3d>& centers);
 
   std::vector<Eigen::Vector3d> points_;

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trimquad/base/parallel.h"
+
 namespace trimquad {
 namespace {
 
-/// Factor of the fairness around places that stay turned over, each round, and the largest; and how far
-/// around, quads.
-constexpr double kStiffens = 4, kStiffest = 1e5, kWidestSpot = 1;
+/// Largest factor of the fairness around places that stay turned over, and how far around, quads.
+constexpr double kStiffest = 1e5, kWidestSpot = 1;
 
 /// Factor of the fairness on a knot rectangle where the deviations around it are below the first part of the
 /// tolerance; its inverse where they are above the second.
@@ -16,6 +17,14 @@ constexpr double kStiffensWithin = 4, kWell = 0.5, kClosely = 0.9;
 
 bool holds(const Fairness::Spot& spot, const FitPlace& x) {
   return spot.chart == x.chart && (spot.at - x.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
+}
+
+/// The shorter way around a closed surface.
+Eigen::Vector2d wayTo(const SplineSurface& surface, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  Eigen::Vector2d way = to - from;
+  const double period = surface.lastU() - surface.firstU();
+  if (surface.closedU) way[0] -= period * std::round(way[0] / period);
+  return way;
 }
 
 /// Whether the surface stays that near all over a triangle of its parameter plane, a corner of it and two
@@ -51,15 +60,38 @@ bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<Surf
     const SurfaceSample &a = samples[cell[0]], &b = samples[cell[1]], &c = samples[cell[2]];
     if (a.chart != b.chart || a.chart != c.chart) return true;
     const auto& surface = surfaces[a.chart];
-    // By the shorter way around a closed surface.
-    const auto side = [&](const SurfaceSample& end) {
-      Eigen::Vector2d d = end.parameter - a.parameter;
-      const double period = surface.lastU() - surface.firstU();
-      if (surface.closedU) d[0] -= period * std::round(d[0] / period);
-      return d;
-    };
-    return staysNear(surface, a.parameter, side(b), side(c), region, distance);
+    return staysNear(surface, a.parameter, wayTo(surface, a.parameter, b.parameter),
+                     wayTo(surface, a.parameter, c.parameter), region, distance);
   });
+}
+
+std::vector<FitPlace> placesAway(const std::vector<SplineSurface>& surfaces,
+                                 const std::vector<FitPlace>& feet,
+                                 const std::vector<std::array<int, 3>>& cells, const TriangleTree& region,
+                                 double distance, int threads, const Progress& progress) {
+  std::vector<char> isAway(cells.size(), 0);
+  const auto middle = [&](const std::array<int, 3>& cell) {
+    const FitPlace& a = feet[cell[0]];
+    const auto& surface = surfaces[a.chart];
+    const Eigen::Vector2d x = a.parameter + (wayTo(surface, a.parameter, feet[cell[1]].parameter) +
+                                             wayTo(surface, a.parameter, feet[cell[2]].parameter)) /
+                                                3;
+    return Eigen::Vector2d(surface.wrappedU(x[0]), x[1]);
+  };
+  parallelParts(int(cells.size()), threads, [&](int begin, int end) {
+    progress.check();
+    for (int k = begin; k < end; ++k) {
+      const auto& [i, j, l] = cells[k];
+      if (feet[i].chart != feet[j].chart || feet[i].chart != feet[l].chart) continue;
+      const Eigen::Vector2d x = middle(cells[k]);
+      const Eigen::Vector3d p = surfaces[feet[i].chart].point(x[0], x[1]);
+      isAway[k] = region.closest(p).squaredDistance > distance * distance;
+    }
+  });
+  std::vector<FitPlace> result;
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    if (isAway[k]) result.push_back({feet[cells[k][0]].chart, middle(cells[k])});
+  return result;
 }
 
 RectangleStiffness::RectangleStiffness(const std::vector<const SplineSpace*>& spaces,
@@ -108,6 +140,11 @@ void RectangleStiffness::updateChart(int chart, const std::vector<double>& large
     }
 }
 
+/// The weight of a knot rectangle goes with the square of its area.
+double FoldSpots::firstFactor(double knotInterval) const {
+  return policy_.strength ? std::min(1.0, *policy_.strength * std::pow(knotInterval, 4)) : 1;
+}
+
 void FoldSpots::update(const std::vector<FitPlace>& folds, const std::vector<FitPlace>& failing,
                        const std::function<double(const FitPlace&)>& knotInterval) {
   const std::size_t before = spots_.size();
@@ -123,14 +160,14 @@ void FoldSpots::update(const std::vector<FitPlace>& folds, const std::vector<Fit
       if (k < before) folded[k] = 1;
     }
     const double reach = knotInterval(x);
-    if (isNew && reach <= kWidestSpot) spots_.push_back({x.chart, x.parameter, reach, 1});
+    if (isNew && reach <= kWidestSpot) spots_.push_back({x.chart, x.parameter, reach, firstFactor(reach)});
     coverFolds_ = coverFolds_ && (!isNew || reach <= kWidestSpot);
   }
   for (std::size_t k = 0; k < before; ++k) {
     if (fails[k])
-      spots_[k].factor /= kStiffens;
+      spots_[k].factor /= policy_.step;
     else if (folded[k])
-      spots_[k].factor = std::min(kStiffens * spots_[k].factor, kStiffest);
+      spots_[k].factor = std::min(policy_.step * spots_[k].factor, kStiffest);
   }
 }
 

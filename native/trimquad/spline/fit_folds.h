@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "trimquad/mesh/aabb_tree.h"
@@ -29,6 +30,13 @@ std::vector<std::array<int, 3>> cellsAround(const std::vector<std::array<int, 3>
 bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
               const std::vector<std::array<int, 3>>& cells, const TriangleTree& region, double distance);
 
+/// Middles of such triangles where a surface is farther from the region than that.
+/// \param feet of the samples
+std::vector<FitPlace> placesAway(const std::vector<SplineSurface>& surfaces,
+                                 const std::vector<FitPlace>& feet,
+                                 const std::vector<std::array<int, 3>>& cells, const TriangleTree& region,
+                                 double distance, int threads, const Progress& progress);
+
 /// As much fairness on the knot rectangles of some charts as the tolerance allows: more where samples on one
 /// and around it are well within, less where they come close to it, but no less than without.
 class RectangleStiffness {
@@ -51,6 +59,13 @@ class RectangleStiffness {
 /// Places of more fairness where surfaces are turned over in few places.
 class FoldSpots {
  public:
+  struct Policy {
+    /// Of the fairness at first, relative to that of the knot rectangle; none: as on a whole quad.
+    std::optional<double> strength = {};
+    double step = 4;  ///< factor by which it changes
+  };
+  explicit FoldSpots(const Policy& policy) : policy_(policy) {}
+
   /// More of it where folds lie, the more the longer they stay; and less again where samples fail, for it may
   /// keep them from the tolerance.
   /// \param knotInterval by place: the longer side of its knot rectangle, quads
@@ -62,6 +77,9 @@ class FoldSpots {
   bool coverFolds() const { return coverFolds_; }
 
  private:
+  double firstFactor(double knotInterval) const;
+
+  Policy policy_;
   std::vector<Fairness::Spot> spots_;
   bool coverFolds_ = false;
 };

@@ -18,6 +18,12 @@ constexpr int kMaxPoles = 200000;
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
 constexpr double kTangentGivesWay = 0.1;
+/// Factor of the reach of the stiff surroundings of a singularity where samples fail in them.
+constexpr double kSoftens = 0.25;
+/// Fairness where surfaces are turned over is as strong as on whole quads first, which can keep them from the
+/// tolerance; where they come within so many tolerances only, it grows from little instead.
+constexpr double kWorthGentleness = 2.5;
+constexpr FoldSpots::Policy kGentle = {.strength = 1000, .step = 8};
 /// Tolerance under which the parameters' bends within the sectors of a singularity count, quads.
 constexpr double kFine = 0.01;
 /// Radians between the surfaces next to singularities that weigh as much as a deviation by the tolerance.
@@ -25,7 +31,7 @@ constexpr double kKink = 2e-3;
 /// Knots at these distances from singularities, where the surfaces bend from one sector's shape to the
 /// grid's.
 constexpr double kKnotsAround[] = {1, 2};
-constexpr double kOnLine = 1e-9, kBeside = 1e-6;  ///< quads
+constexpr double kOnLine = 1e-9;  ///< quads
 /// How much wider the knot intervals on one side of a border may be than on the other where surfaces are
 /// turned over.
 constexpr double kGrading = 1.5;
@@ -73,13 +79,14 @@ std::vector<std::vector<BorderSide>> borderSides(const Layout& layout) {
 class LayoutFit : public FitRounds {
  public:
   LayoutFit(const Region& region, const GridMap& map, const Layout& layout, const FitOptions& options,
-            const Progress& progress)
+            const FoldSpots::Policy& folds, const Progress& progress)
       : FitRounds(region, options,
                   {.maxRounds = kMaxRounds,
                    .maxPoles = kMaxPoles,
                    .takesBack = true,
                    .failsAtFeet = false,
-                   .several = true},
+                   .several = true,
+                   .folds = folds},
                   progress),
         layout_(layout),
         sides_(borderSides(layout)),
@@ -105,6 +112,25 @@ class LayoutFit : public FitRounds {
   std::optional<std::vector<SplineSurface>> leastSquares(
       const std::vector<std::vector<Datum>>& data) const override {
     return space_.leastSquares(data, fairness_, progress_);
+  }
+  std::optional<std::vector<SplineSurface>> partOfLeastSquares(
+      const std::vector<std::vector<Datum>>& data, const std::vector<int>& chosen,
+      std::vector<SplineSurface> surfaces) const override {
+    return space_.leastSquares(data, fairness_, chosen, std::move(surfaces), progress_);
+  }
+  JoinedKnots* joinedKnots() override { return &space_; }
+  void halveKnots(const std::vector<int>& chosen) override {
+    for (const int c : chosen)
+      for (SplineLine* line : {&space_.charts[c].u, &space_.charts[c].v}) {
+        std::vector<double> middles;
+        for (int i = 0; i < line->spans(); ++i)
+          if (line->width(i) > narrowest_) middles.push_back((line->breaks[i] + line->breaks[i + 1]) / 2);
+        for (const double x : middles) {
+          line->breaks.insert(std::upper_bound(line->breaks.begin(), line->breaks.end(), x), x);
+          auto& surface = result_.surfaces[c];
+          surface = line == &space_.charts[c].u ? withKnotU(surface, x) : withKnotV(surface, x);
+        }
+      }
   }
 
   /// Two spans along the longer side, room beyond the surface's boundary, and a knot wherever a border ends.
@@ -175,9 +201,10 @@ class LayoutFit : public FitRounds {
 
   /// There the surfaces' parameters are bent sharply, and feet would pile up on some of their sheets.
   bool isHeld(const SurfaceSample& s) const override {
-    return std::any_of(singular_[s.chart].begin(), singular_[s.chart].end(), [&](const Eigen::Vector2d& x) {
-      return (x - s.parameter).norm() < space_.stiffReach;
-    });
+    const auto& corners = singular_[s.chart];
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      if ((corners[k] - s.parameter).norm() < space_.stiffReach[s.chart][k]) return true;
+    return false;
   }
 
   /// The foot of a point on the surfaces, from a place near it, over borders where need be.
@@ -240,6 +267,22 @@ class LayoutFit : public FitRounds {
   /// What stalls next to a singularity may be held by the tangents there.
   void giveWay() override { space_.tangentWeight *= kTangentGivesWay; }
 
+  /// Where samples fail though knots are narrower than the stiff surroundings of a singularity, these shrink.
+  void softenSingularities() {
+    std::set<std::pair<int, int>> softer;
+    for (const auto& x : failing_) {
+      const auto& space = space_.charts[x.chart];
+      const double interval = std::max(space.u.width(space.u.spanOf(x.parameter[0])),
+                                       space.v.width(space.v.spanOf(x.parameter[1])));
+      for (std::size_t k = 0; k < singular_[x.chart].size(); ++k) {
+        double& reach = space_.stiffReach[x.chart][k];
+        if (interval < reach && (singular_[x.chart][k] - x.parameter).norm() < reach + interval)
+          softer.insert({x.chart, int(k)});
+      }
+    }
+    for (const auto& [chart, k] : softer) space_.stiffReach[chart][k] *= kSoftens;
+  }
+
   /// A border's curve has only knots that both sides have: where it fails, or where the finer side's next
   /// poles go another way than it and fold over, the coarser side is to be refined too.
   void addCoarser(const FitPlace& x, double coarserBy, std::set<std::tuple<int, int, int>>& coarser) const {
@@ -261,41 +304,13 @@ class LayoutFit : public FitRounds {
     }
   }
 
-  /// Next to a border across which the surfaces are smooth: where one side's knot intervals across it are
-  /// wider than the other's, that side cannot bend as the other one has to, and is to be refined.
-  void addWider(const FitPlace& x, std::set<std::tuple<int, int, int>>& wider) const {
-    const auto& own = space_.charts[x.chart];
-    for (const auto& side : sides_[x.chart]) {
-      const int over = side.along[0] != 0 ? 1 : 0;
-      const double depth = (x.parameter - side.start).dot(side.inward),
-                   s = (x.parameter - side.start).dot(side.along);
-      if (side.border->feature || s < 0 || s > side.length || depth < -kOnLine) continue;
-      const Eigen::Vector2d on = side.start + s * side.along;
-      const Eigen::Vector2d here = on + kBeside * side.inward, before = on - kBeside * side.inward;
-      const Eigen::Vector2d there = Layout::apply(side.over, layout_.scale, before);
-      const SplineLine& line = over == 0 ? own.u : own.v;
-      const int span = line.spanOf(here[over]);
-      const int axis = side.over.rotation % 2 == 0 ? over : 1 - over;
-      const auto& neighbour = space_.charts[side.neighbour];
-      const SplineLine& theirs = axis == 0 ? neighbour.u : neighbour.v;
-      const int beyond = theirs.spanOf(there[axis]);
-      if (depth > std::max(line.width(span), theirs.width(beyond))) continue;
-      if (theirs.width(beyond) > kGrading * line.width(span))
-        wider.insert({side.neighbour, axis, beyond});
-      else if (line.width(span) > kGrading * theirs.width(beyond))
-        wider.insert({x.chart, over, span});
-    }
-  }
-
   bool insertKnots() override {
+    softenSingularities();
     std::vector<std::vector<Eigen::Vector2d>> failingIn(space_.charts.size());
     for (const auto& x : failing_) failingIn[x.chart].push_back(x.parameter);
     std::set<std::tuple<int, int, int>> coarser;  // chart, axis, span
     for (const auto& x : failing_) addCoarser(x, 0.75, coarser);
-    for (const auto& x : turned_) {
-      addCoarser(x, kGrading, coarser);
-      if (smoothings_.count(x.chart)) addWider(x, coarser);
-    }
+    for (const auto& x : turned_) addCoarser(x, kGrading, coarser);
     std::vector<std::tuple<int, int, double>> middles;
     for (const auto& [chart, axis, span] : coarser) {
       const SplineLine& line = axis == 0 ? space_.charts[chart].u : space_.charts[chart].v;
@@ -339,9 +354,29 @@ class LayoutFit : public FitRounds {
 
 FittedSurface fitLayout(const Region& region, const GridMap& map, Layout layout, const FitOptions& options,
                         const Progress& progress) {
-  FittedSurface fitted = LayoutFit(region, map, layout, options, progress).run();
-  fitted.layout = std::move(layout);
-  return fitted;
+  const auto take = [&](FittedSurface fitted) {
+    fitted.layout = std::move(layout);
+    return fitted;
+  };
+  LayoutFit fit(region, map, layout, options, {}, progress);
+  try {
+    return take(fit.run());
+  } catch (const Error& error) {
+    if (error.kind() != Error::Kind::Stage || !(fit.closest() <= kWorthGentleness * options.tolerance)) throw;
+  }
+  return take(LayoutFit(region, map, layout, options, kGentle, progress).run());
+}
+
+std::optional<FittedSurface> closerCharts(const FittedSurface& fitted, const std::vector<int>& chosen,
+                                          const Region& region, const GridMap& map, const FitOptions& options,
+                                          const Progress& progress) {
+  return LayoutFit(region, map, *fitted.layout, options, {}, progress).closer(fitted, chosen);
+}
+
+std::optional<FittedSurface> smoothedCharts(const FittedSurface& fitted, const std::map<int, int>& steps,
+                                            const Region& region, const GridMap& map,
+                                            const FitOptions& options, const Progress& progress) {
+  return LayoutFit(region, map, *fitted.layout, options, {}, progress).smoothed(fitted, steps);
 }
 
 }  // namespace trimquad

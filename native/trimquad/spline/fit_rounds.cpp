@@ -62,6 +62,8 @@ constexpr double kFewTurned = 0.05;
 /// surface without them is found; and rounds that are spent on getting rid of them.
 constexpr double kSmallFolds = 3e-3;
 constexpr int kFoldPatience = 8;
+/// Rounds that are spent on getting rid of bulges between samples.
+constexpr int kBulgePatience = 5;
 /// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
 /// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
 /// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
@@ -69,6 +71,9 @@ constexpr int kFoldPatience = 8;
 constexpr double kSpacedFor = 0.5, kSpacedPoles = 0.55, kSpacingReserve = 0.9, kWorthSpacing = 0.95,
                  kLeastSpacing = 0.75;
 constexpr int kMaxSpacings = 6, kMaxSpacedCorrections = 4;
+/// Part of the way to an opposite sheet that a surface should not be farther away than, and how many times
+/// closer than elsewhere it is to stay for that at most.
+constexpr double kOwnPart = 0.4, kMostCloser = 4;
 /// Part of the control samples at most that may have started from bad parameters.
 constexpr double kFewLost = 0.01;
 
@@ -88,9 +93,9 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       threads_(options.threads),
       maxPoles_(std::min(policy.maxPoles, options.maxPoles)),
       progress_(progress),
-      smoothings_(options.smoothings),
       triangles_(triangleTree(region.mesh)),
       policy_(policy),
+      foldSpots_(policy.folds),
       slides_(options.slides && !policy.several) {}
 
 void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
@@ -105,7 +110,7 @@ void FitRounds::setScale(double surfaceArea, double mapArea, double extent) {
 
 FittedSurface FitRounds::run() try { return rounds(); } catch (const Error& error) {
   if (!kept_ || error.kind() != Error::Kind::Stage) throw;
-  return std::move(smooth_ ? *smooth_ : *kept_);
+  return std::move(*kept_);
 }
 
 FittedSurface FitRounds::rounds() {
@@ -119,14 +124,12 @@ FittedSurface FitRounds::rounds() {
     closest_.note(deviation_.max, poles());
     if (deviation_.turnedOver.empty()) closestClean_.note(deviation_.max, poles());
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
-    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0)) {
-      if (smoothings_.empty()) return economised();
-      kept_ = result_;
-      smoothChosen();
-      return std::move(smooth_ ? *smooth_ : *kept_);
-    }
+    if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0) &&
+        result_.bulges == 0)
+      return economised();
     keepIfEnough();
     if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
+    if (kept_ && kept_->bulges > 0 && ++bulgeRounds_ > kBulgePatience) throw unreachable();
     stiffenFolds();
     if (correctionPays()) {
       correct();
@@ -142,10 +145,27 @@ FittedSurface FitRounds::rounds() {
 
 void FitRounds::takeSamples() {
   samples_ = makeSamples(false);
+  if (const JoinedKnots* knots = joinedKnots()) sampledOver_ = knots->charts;
+  keepSheetsApart();
   ofMap_.clear();
   for (const auto& s : samples_) ofMap_.push_back({s.chart, s.parameter});
   cells_ = cells();
   emphasis_.assign(samples_.size(), 1);
+}
+
+/// Two sheets within the tolerance of their region pass through each other where that is thinner than twice
+/// as much: samples weigh more there.
+void FitRounds::keepSheetsApart() {
+  parallelParts(int(samples_.size()), threads_, [&](int begin, int end) {
+    progress_.check();
+    for (int i = begin; i < end; ++i) {
+      auto& s = samples_[i];
+      const auto opposite = triangles_.closestFacing(s.point, -s.meshNormal, tolerance_ / kOwnPart);
+      if (!opposite) continue;
+      const double closer = tolerance_ / (kOwnPart * std::sqrt(opposite->squaredDistance));
+      s.weight *= std::pow(std::clamp(closer, 1.0, kMostCloser), 2);
+    }
+  });
 }
 
 std::vector<std::vector<Datum>> FitRounds::dataOf(const std::vector<SurfaceSample>& samples,
@@ -311,47 +331,75 @@ void FitRounds::chooseParameters() {
 void FitRounds::keepIfEnough() {
   const std::size_t folds = deviation_.turnedOver.size();
   if (deviation_.max > enough_ || double(folds) > kSmallFolds * double(samples_.size())) return;
-  if (kept_ && (folds > 0 ? folds >= kept_->folded.size()
-                          : kept_->folded.empty() && deviation_.max > 0.95 * kept_->maxDeviation))
+  if (kept_ && kept_->bulges == 0 &&
+      (folds > 0 ? folds >= kept_->folded.size()
+                 : kept_->folded.empty() && deviation_.max > 0.95 * kept_->maxDeviation))
     return;
   if (folds > 0 &&
       !stayNear(result_.surfaces, samples_, cellsAround(cells_, deviation_.turnedOver), triangles_, enough_))
     return;
   const auto failing = failing_;
   const auto turned = turned_;
-  if (verified(enough_, kSmallFolds) &&
-      (!kept_ || result_.folded.empty() || result_.folded.size() < kept_->folded.size())) {
-    kept_ = result_;
-    smoothChosen();
-  }
+  const bool isEnough = verified(enough_, kSmallFolds);
+  const bool better = !kept_ || result_.bulges < kept_->bulges ||
+                      (result_.bulges == kept_->bulges &&
+                       (result_.folded.empty() || result_.folded.size() < kept_->folded.size()));
+  if (isEnough && better) kept_ = result_;
   failing_ = failing;
   turned_ = turned;
 }
 
-/// Of the surfaces kept last, those that are smooth in the charts chosen for that, if they lie within what is
-/// enough. All else is left as it was, so that the surfaces of the other charts come out as without.
-void FitRounds::smoothChosen() {
-  smooth_.reset();
-  if (smoothings_.empty()) return;
-  const State before = state();
-  const auto emphasis = emphasis_;
-  const auto turned = turned_, folds = folds_;
-  const Deviation previous = previous_;
+void FitRounds::continueFrom(const FittedSurface& fitted) {
+  const auto& from = *fitted.continuation;
+  result_ = fitted;
+  fairness_ = from.fairness;
+  joinedKnots()->charts = from.sampledOver;
+  takeSamples();
+  *joinedKnots() = from.knots;  // samples change the tangents at singularities
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    samples_[i].chart = from.samples[i].chart;
+    samples_[i].parameter = from.samples[i].parameter;
+    emphasis_[i] = from.samples[i].emphasis;
+  }
+  deviation_ = measure(samples_, feet_);
+}
+
+std::optional<FittedSurface> FitRounds::smoothed(const FittedSurface& fitted,
+                                                 const std::map<int, int>& steps) {
+  continueFrom(fitted);
   std::vector<const SplineSpace*> spaces;
   for (int c = 0; c < charts(); ++c) spaces.push_back(&space(c));
-  RectangleStiffness stiffness(spaces, smoothings_);
-  while (stiffness.update(samples_, tolerance_)) {
+  std::vector<int> chosen;
+  for (const auto& [chart, count] : steps) chosen.push_back(chart);
+  std::optional<FittedSurface> smooth;
+  for (RectangleStiffness stiffness(spaces, steps); stiffness.update(samples_, tolerance_);) {
     fairness_.stiffness = stiffness.factors();
-    unfold(deviation_.turnedOver);
-    solve();
-    if (deviation_.max <= enough_ && verified(enough_, kSmallFolds)) smooth_ = result_;
+    auto surfaces = partOfLeastSquares(dataOf(samples_, emphasis_), chosen, result_.surfaces);
+    if (!surfaces) break;
+    result_.surfaces = std::move(*surfaces);
+    deviation_ = measure(samples_, feet_);
+    if (deviation_.max <= enough_ && verified(enough_, kSmallFolds) && result_.bulges <= fitted.bulges)
+      smooth = result_;
   }
-  fairness_.stiffness.clear();
-  restore(before);
-  emphasis_ = emphasis;
-  turned_ = turned;
-  folds_ = folds;
-  previous_ = previous;
+  if (smooth) smooth->continuation = fitted.continuation;
+  return smooth;
+}
+
+std::optional<FittedSurface> FitRounds::closer(const FittedSurface& fitted, const std::vector<int>& chosen) {
+  continueFrom(fitted);
+  halveKnots(chosen);
+  const double before = deviation_.rms;
+  std::optional<FittedSurface> result;
+  for (corrections_ = 0; corrections_ <= kMaxCorrections; correct()) {
+    auto surfaces = partOfLeastSquares(dataOf(samples_, emphasis_), chosen, result_.surfaces);
+    if (!surfaces) break;
+    result_.surfaces = std::move(*surfaces);
+    deviation_ = measure(samples_, feet_);
+    if (deviation_.max <= enough_ && deviation_.rms < before && verified(enough_, kSmallFolds) &&
+        result_.bulges <= fitted.bulges)
+      result = result_;
+  }
+  return result;
 }
 
 /// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
@@ -405,7 +453,20 @@ std::vector<ChartDeviation> FitRounds::deviationsByChart(const std::vector<Surfa
   return result;
 }
 
-/// Whether other samples keep the tolerance as well. \param folds part of them that may be turned over
+std::shared_ptr<const FittedSurface::Continuation> FitRounds::continuation() {
+  const JoinedKnots* knots = joinedKnots();
+  if (!knots) return {};
+  auto result = std::make_shared<FittedSurface::Continuation>();
+  result->knots = *knots;
+  result->fairness = fairness_;
+  result->sampledOver = sampledOver_;
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    result->samples.push_back({samples_[i].chart, samples_[i].parameter, emphasis_[i]});
+  return result;
+}
+
+/// Whether other samples keep the tolerance as well; counts bulges between them too. \param folds part of
+/// them that may be turned over
 bool FitRounds::verified(double tolerance, double folds) {
   auto control = makeSamples(true);
   std::vector<FitPlace> feet;
@@ -413,6 +474,7 @@ bool FitRounds::verified(double tolerance, double folds) {
   if (startNearby(control, tolerance)) found = measure(control, feet);
   result_.deviations = deviationsByChart(control, feet);
   if (policy_.failsAtFeet) moveTo(feet, control);
+  result_.bulges = 0;
   result_.maxDeviation = std::max(found.max, deviation_.max);
   result_.rmsDeviation = found.rms;
   result_.rounds = rounds_;
@@ -424,11 +486,22 @@ bool FitRounds::verified(double tolerance, double folds) {
   }
   for (const int i : deviation_.turnedOver) result_.folded.push_back({samples_[i].point, feet_[i].chart});
   result_.samples = int(control.size() + samples_.size());
-  if (found.max <= tolerance && double(found.turnedOver.size()) <= folds * double(control.size()))
-    return true;
-  failing_ = places(control, threshold(found.max));
-  noteTurned(control, found);
-  return false;
+  if (found.max > tolerance || double(found.turnedOver.size()) > folds * double(control.size())) {
+    failing_ = places(control, threshold(found.max));
+    noteTurned(control, found);
+    return false;
+  }
+  // Feet avoid bulges between them. Of a true surface the triangles are a coarse picture.
+  if (!region_.surface) {
+    const auto bulges = placesAway(result_.surfaces, feet_, cells_, triangles_, enough_, threads_, progress_);
+    result_.bulges = int(bulges.size());
+    if (!bulges.empty()) {
+      failing_ = bulges;
+      turned_.clear();
+    }
+  }
+  result_.continuation = continuation();
+  return true;
 }
 
 /// Deviation above which a sample asks for knots.
@@ -502,7 +575,7 @@ bool FitRounds::fitsRespaced() {
       return false;
     correct();
   }
-  return deviation_.turnedOver.empty() && verified(tolerance_, 0);
+  return deviation_.turnedOver.empty() && verified(tolerance_, 0) && result_.bulges == 0;
 }
 
 /// More fairness where the surfaces are turned over in few places.

@@ -25,12 +25,22 @@ class FitRounds {
   /// reached. Throws Error(Stage, "fit") where not even those are.
   FittedSurface run();
 
+  /// As smoothedCharts().
+  std::optional<FittedSurface> smoothed(const FittedSurface& fitted, const std::map<int, int>& steps);
+
+  /// As closerCharts().
+  std::optional<FittedSurface> closer(const FittedSurface& fitted, const std::vector<int>& chosen);
+
+  /// The smallest deviation so far.
+  double closest() const { return best_; }
+
  protected:
   struct Policy {
     int maxRounds, maxPoles;
     bool takesBack;    ///< corrections that made things worse
     bool failsAtFeet;  ///< knots go where the failing control samples' feet are, not their parameters
     bool several;      ///< surfaces, for messages
+    FoldSpots::Policy folds = {};
   };
   FitRounds(const Region& region, const FitOptions& options, const Policy& policy, const Progress& progress);
   /// To be called by the derived class's constructor.
@@ -45,6 +55,16 @@ class FitRounds {
   virtual const std::vector<std::array<int, 3>>& cells() const = 0;
   virtual std::optional<std::vector<SplineSurface>> leastSquares(
       const std::vector<std::vector<Datum>>& data) const = 0;
+  /// Of several surfaces: the same, with the charts that are not chosen as they are in `surfaces`.
+  virtual std::optional<std::vector<SplineSurface>> partOfLeastSquares(
+      const std::vector<std::vector<Datum>>& /*data*/, const std::vector<int>& /*chosen*/,
+      std::vector<SplineSurface> /*surfaces*/) const {
+    return {};
+  }
+  /// Of several surfaces.
+  virtual JoinedKnots* joinedKnots() { return nullptr; }
+  /// Of some of several surfaces, which stay the same.
+  virtual void halveKnots(const std::vector<int>& /*chosen*/) {}
   struct Foot {
     FitPlace at, start;    ///< `start`: where the search began, as seen from the foot's chart
     bool limited = false;  ///< a crease ended the way to it
@@ -71,7 +91,6 @@ class FitRounds {
   const double tolerance_, enough_;
   const int threads_, maxPoles_;
   const Progress& progress_;
-  const std::map<int, int> smoothings_;  ///< by chart
   FittedSurface result_;
   std::vector<SurfaceSample> samples_;
   std::vector<std::array<int, 3>> cells_;
@@ -90,7 +109,9 @@ class FitRounds {
   };
 
   FittedSurface rounds();
+  void continueFrom(const FittedSurface& fitted);
   void takeSamples();
+  void keepSheetsApart();
   void solve();
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
@@ -104,9 +125,9 @@ class FitRounds {
   void unfold(const std::vector<int>& turnedOver);
   void chooseParameters();
   void keepIfEnough();
-  void smoothChosen();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
   bool verified(double tolerance, double folds);
+  std::shared_ptr<const FittedSurface::Continuation> continuation();
   std::vector<ChartDeviation> deviationsByChart(const std::vector<SurfaceSample>& control,
                                                 const std::vector<FitPlace>& feet) const;
   double threshold(double largest) const;
@@ -126,8 +147,8 @@ class FitRounds {
 
   const TriangleTree triangles_;  ///< of the region
   const Policy policy_;
-  std::optional<FittedSurface> kept_;    ///< within what is enough
-  std::optional<FittedSurface> smooth_;  ///< the same, smoothed
+  std::vector<SplineSpace> sampledOver_;  ///< by chart of several surfaces: over whose knots `samples_` are
+  std::optional<FittedSurface> kept_;     ///< within what is enough
   FoldSpots foldSpots_;
   Deviation deviation_, previous_;
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over
@@ -147,7 +168,7 @@ class FitRounds {
   bool slides_;            ///< samples whose parameters are their feet, along the surface
   bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
   bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
-  int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0;
+  int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0, bulgeRounds_ = 0;
 };
 
 }  // namespace trimquad

@@ -2,11 +2,13 @@
 
 #include <limits>
 #include <map>
+#include <memory>
 
 #include "trimquad/base/progress.h"
 #include "trimquad/mesh/region.h"
 #include "trimquad/spline/chart.h"
 #include "trimquad/spline/chart_deviation.h"
+#include "trimquad/spline/joined_space.h"
 #include "trimquad/spline/layout.h"
 #include "trimquad/spline/spline_geometry.h"
 
@@ -20,9 +22,6 @@ struct FitOptions {
   /// Charts to cut in two, again and again: by round, indices of the layout of the round before. Regions for
   /// one chart are cut as chart 0.
   std::vector<std::vector<int>> bisections = {};
-  /// By chart at fault, an index of the layout: in how many steps its surface is made smoother, as `enough`
-  /// allows. Where it is turned over next to a border, the knots on both sides are made alike.
-  std::map<int, int> smoothings = {};
   int degree = 3;  ///< 2..5
   /// Whether points of the region may slide along a single surface, which needs the fewest poles, as long as
   /// it folds over nowhere.
@@ -49,7 +48,23 @@ struct FittedSurface {
   };
   std::vector<Fold> folded;
   int samples = 0;
+  /// Places between samples where the surfaces are farther away than what is enough. There are none but where
+  /// no surfaces without are found.
+  int bulges = 0;
   int rounds = 0;
+  /// Of several surfaces: what they minimise.
+  struct Continuation {
+    struct Place {
+      int chart;
+      Eigen::Vector2d parameter;
+      double emphasis;  ///< factor of the sample's weight
+    };
+    JoinedKnots knots;
+    Fairness fairness;
+    std::vector<SplineSpace> sampledOver;  ///< by chart: over whose knots the samples are spread
+    std::vector<Place> samples;
+  };
+  std::shared_ptr<const Continuation> continuation;
 };
 
 /// Least-squares fit with parameter correction, knots refined only where the deviation exceeds the tolerance.
@@ -58,5 +73,19 @@ struct FittedSurface {
 /// them. Throws Error(Stage, "fit") where the tolerance cannot be met, with the deviation reached.
 FittedSurface fitSurface(const Region& region, const GridMap& map, const FitOptions& options,
                          const Progress& progress);
+
+/// Several surfaces with those of some charts smoother, as `options.enough` allows; all others stay as they
+/// are, bit by bit. Empty where no smoother ones are within that.
+/// \pre `fitted` has a continuation, and is of this region and map
+/// \param steps by chart: of more fairness
+std::optional<FittedSurface> smoothedCharts(const FittedSurface& fitted, const std::map<int, int>& steps,
+                                            const Region& region, const GridMap& map,
+                                            const FitOptions& options, const Progress& progress);
+
+/// The same with the surfaces of some charts closer to the region, over halved knot intervals.
+/// \param chosen charts, ascending
+std::optional<FittedSurface> closerCharts(const FittedSurface& fitted, const std::vector<int>& chosen,
+                                          const Region& region, const GridMap& map, const FitOptions& options,
+                                          const Progress& progress);
 
 }  // namespace trimquad

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "trimquad/base/error.h"
@@ -19,6 +20,8 @@ constexpr int kMaxMultiplierSteps = 200;
 constexpr int kIdleMultiplierSteps = 60;
 /// Violations of exact conditions that are left, relative to the extent of the data.
 constexpr double kRounding = 1e-13;
+/// How far from singularities narrow knot rectangles count in full towards fairness at first, quads.
+constexpr double kStiffReach = 0.25;
 /// How far the influence of a singularity reaches along a border, quads; to the next knot from there.
 constexpr double kTangentReach = 2;
 /// Tangents at a singularity are taken from data this close to it, quads; from so many at least.
@@ -169,7 +172,7 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
   };
   const double reachStart = startPoint.isSingular() ? reach(true) : 0,
                reachEnd = endPoint.isSingular() ? reach(false) : 0;
-  const Gluing atStart = gluing(index, true), atEnd = gluing(index, false);
+  const Gluing atStart = gluingOf(index, true), atEnd = gluingOf(index, false);
   // The derivatives into both charts add up to nothing, but for the one along the border next to
   // singularities.
   const auto acrossAt = [&](double s) {
@@ -302,9 +305,9 @@ Eigen::MatrixXd JoinedSpace::satisfying(const std::vector<Condition>& conditions
   return best;
 }
 
-JoinedSpace::Gluing JoinedSpace::gluing(int border, bool atStart) const {
-  const auto found = gluing_.find({border, atStart});
-  if (found != gluing_.end()) return found->second;
+JoinedSpace::Gluing JoinedSpace::gluingOf(int border, bool atStart) const {
+  const auto found = gluing.find({border, atStart});
+  if (found != gluing.end()) return found->second;
   const auto& point =
       layout_.points[atStart ? layout_.borders[border].startPoint : layout_.borders[border].endPoint];
   return {1, 1, point.isSingular() ? 2 * std::cos(2 * M_PI / point.quarters) : 0};
@@ -349,7 +352,7 @@ std::optional<Eigen::Vector3d> tangentIn(const Sector& sector, const std::vector
 }  // namespace
 
 void JoinedSpace::alignTangents(const std::vector<std::vector<Datum>>& data) {
-  gluing_.clear();
+  gluing.clear();
   for (int p = 0; p < int(layout_.points.size()); ++p) {
     if (!layout_.points[p].isSingular()) continue;
     // Borders around the singularity, counter-clockwise: the sector to the left of each is to the right of
@@ -407,9 +410,13 @@ void JoinedSpace::alignTangents(const std::vector<std::vector<Datum>>& data) {
       const Eigen::Vector3d own = inPlane(rays[i].tangent);
       g.along =
           (g.left * rays[next[i]].tangent + g.right * rays[before[i]].tangent).dot(own) / own.squaredNorm();
-      gluing_[{rays[i].border, rays[i].atStart}] = g;
+      gluing[{rays[i].border, rays[i].atStart}] = g;
     }
   }
+}
+
+JoinedSpace::JoinedSpace(const Layout& layout) : layout_(layout) {
+  for (const auto& corners : singularCorners()) stiffReach.emplace_back(corners.size(), kStiffReach);
 }
 
 std::vector<std::vector<Eigen::Vector2d>> JoinedSpace::singularCorners() const {
@@ -431,52 +438,103 @@ std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
   return result;
 }
 
-std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
-    const std::vector<std::vector<Datum>>& data, const Fairness& fairness, const Progress& progress) const {
-  const auto offset = offsets();
-  const int unknowns = offset.back();
+SplineSurface JoinedSpace::surfaceOf(int chart) const {
+  const SplineSpace& space = charts[chart];
+  SplineSurface s;
+  s.degreeU = space.u.degree;
+  s.degreeV = space.v.degree;
+  s.knotsU = space.u.knots();
+  s.knotsV = space.v.knots();
+  s.countU = space.u.unknowns();
+  s.countV = space.v.unknowns();
+  return s;
+}
+
+namespace {
+
+Eigen::Vector3d middleOf(const std::vector<std::vector<Datum>>& data) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  double count = 0, extent = 0;
+  double count = 0;
   for (const auto& chart : data)
     for (const auto& d : chart) middle += (d.point - middle) / ++count;
+  return middle;
+}
+
+}  // namespace
+
+std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
+    const std::vector<std::vector<Datum>>& data, const Fairness& fairness, const Progress& progress) const {
+  std::vector<int> all(charts.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<SplineSurface> surfaces;
+  for (const int c : all) {
+    surfaces.push_back(surfaceOf(c));
+    surfaces.back().poles.assign(charts[c].poles(), middleOf(data));
+  }
+  return leastSquares(data, fairness, all, std::move(surfaces), progress);
+}
+
+std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
+    const std::vector<std::vector<Datum>>& data, const Fairness& fairness, const std::vector<int>& chosen,
+    std::vector<SplineSurface> surfaces, const Progress& progress) const {
+  const auto offset = offsets();
+  const Eigen::Vector3d middle = middleOf(data);
+  double extent = 0;
   for (const auto& chart : data)
     for (const auto& d : chart) extent = std::max(extent, (d.point - middle).norm());
+
+  // The unknowns are the changes of the chosen charts' poles.
+  std::vector<int> unknown(offset.back(), -1);
+  int unknowns = 0;
+  for (const int c : chosen)
+    for (int i = offset[c]; i < offset[c + 1]; ++i) unknown[i] = unknowns++;
+  Eigen::MatrixXd poles(offset.back(), 3), before(unknowns, 3);
+  for (std::size_t c = 0; c < charts.size(); ++c)
+    for (int i = 0; i < charts[c].poles(); ++i) {
+      const int k = offset[c] + i;
+      poles.row(k) = (surfaces[c].poles[i] - middle).transpose();
+      if (unknown[k] >= 0) before.row(unknown[k]) = poles.row(k);
+    }
 
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(unknowns, 3);
   const auto corners = singularCorners();
-  for (std::size_t c = 0; c < charts.size(); ++c) {
+  for (const int c : chosen) {
     progress.check();
-    Fairness here = fairness.ofChart(int(c));
-    here.stiffAt = corners[c];
-    here.stiffReach = stiffReach;
-    charts[c].addNormalEquations(data[c], here, middle, offset[c], entries, rhs);
+    Fairness here = fairness.ofChart(c);
+    for (std::size_t k = 0; k < corners[c].size(); ++k)
+      here.stiff.push_back({corners[c][k], stiffReach[c][k]});
+    charts[c].addNormalEquations(data[c], here, middle, unknown[offset[c]], entries, rhs);
   }
-  const auto rows = conditions();
-  for (const auto& row : rows)
+  std::vector<Condition> rows;
+  for (auto& row : conditions()) {
+    Eigen::RowVector3d others = Eigen::RowVector3d::Zero();
+    Condition own{{}, row.weight, row.exact};
     for (const auto& [i, a] : row.terms)
-      for (const auto& [j, b] : row.terms)
+      if (unknown[i] >= 0)
+        own.terms.emplace_back(unknown[i], a);
+      else
+        others += a * poles.row(i);
+    for (const auto& [i, a] : own.terms) {
+      rhs.row(i) -= row.weight * a * others;
+      for (const auto& [j, b] : own.terms)
         if (i >= j) entries.emplace_back(i, j, row.weight * a * b);
+    }
+    if (!own.terms.empty()) rows.push_back(std::move(own));
+  }
   Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
   matrix.setFromTriplets(entries.begin(), entries.end());
   entries = {};
+  rhs -= matrix.selfadjointView<Eigen::Lower>() * before;
   SparseSolver solver("fit");
   if (!solver.tryFactorize(matrix)) return {};
   progress.check();
 
-  const Eigen::MatrixXd x = satisfying(rows, solver, solver.solve(rhs), kRounding * extent, progress);
-
-  std::vector<SplineSurface> surfaces;
-  for (std::size_t c = 0; c < charts.size(); ++c) {
-    auto& s = surfaces.emplace_back();
-    s.degreeU = charts[c].u.degree;
-    s.degreeV = charts[c].v.degree;
-    s.knotsU = charts[c].u.knots();
-    s.knotsV = charts[c].v.knots();
-    s.countU = charts[c].u.unknowns();
-    s.countV = charts[c].v.unknowns();
-    for (int i = 0; i < charts[c].poles(); ++i) s.poles.push_back(x.row(offset[c] + i).transpose() + middle);
-  }
+  const Eigen::MatrixXd after =
+      before + satisfying(rows, solver, solver.solve(rhs), kRounding * extent, progress);
+  for (const int c : chosen)
+    for (int i = 0; i < charts[c].poles(); ++i)
+      surfaces[c].poles[i] = after.row(unknown[offset[c] + i]).transpose() + middle;
   return surfaces;
 }
 

@@ -10,21 +10,32 @@
 
 namespace trimquad {
 
+/// What splines over the charts of a layout are made of, apart from the layout.
+struct JoinedKnots {
+  std::vector<SplineSpace> charts;  ///< by chart of the layout
+  /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
+  /// quad^2 of surface.
+  double tangentWeight = 30;
+  /// By chart and corner in a singularity, as JoinedSpace::singularCorners(): how far from it narrow knot
+  /// rectangles count in full towards fairness, quads.
+  std::vector<std::vector<double>> stiffReach;
+  /// Coefficients of a border at its end in a singularity: of the derivatives into the charts to its left and
+  /// right, and of the one along it, all seen away from the singularity.
+  struct Gluing {
+    double left = 1, right = 1, along = 0;
+  };
+  /// By border and whether at its start; the others are even.
+  std::map<std::pair<int, bool>, Gluing> gluing;
+};
+
 /// Splines over all charts of a layout, one tensor-product space each, that agree along the borders.
-class JoinedSpace {
+class JoinedSpace : public JoinedKnots {
  public:
   /// How far borders go on beyond the surface's boundary, for trims that leave the region, quads; to the next
   /// knot from there.
   static constexpr double kBeyondBoundary = 0.5;
 
-  explicit JoinedSpace(const Layout& layout) : layout_(layout) {}
-
-  std::vector<SplineSpace> charts;  ///< by chart of the layout
-  /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
-  /// quad^2 of surface.
-  double tangentWeight = 30;
-  /// How far from a singularity narrow knot rectangles count in full towards fairness, quads.
-  double stiffReach = 0.25;
+  explicit JoinedSpace(const Layout& layout);
 
   /// Takes the directions in which borders leave singularities from the data: by least squares over those
   /// that lie close to a singularity. Without, and where there are too few, they are evenly spread. \param
@@ -46,6 +57,15 @@ class JoinedSpace {
   std::optional<std::vector<SplineSurface>> leastSquares(const std::vector<std::vector<Datum>>& data,
                                                          const Fairness& fairness,
                                                          const Progress& progress) const;
+  /// The same minimisation over the poles of some charts only: the others stay as they are in `surfaces`, bit
+  /// by bit, and the chosen ones go on to fit to them.
+  /// \param chosen charts, ascending
+  /// \param surfaces by chart, over these knots; they meet the conditions
+  std::optional<std::vector<SplineSurface>> leastSquares(const std::vector<std::vector<Datum>>& data,
+                                                         const Fairness& fairness,
+                                                         const std::vector<int>& chosen,
+                                                         std::vector<SplineSurface> surfaces,
+                                                         const Progress& progress) const;
 
  private:
   struct Condition {
@@ -55,20 +75,13 @@ class JoinedSpace {
   };
   static Eigen::MatrixXd satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
                                     Eigen::MatrixXd x, double rounding, const Progress& progress);
-  /// Coefficients of a border at its end in a singularity: of the derivatives into the charts to its left and
-  /// right, and of the one along it, all seen away from the singularity.
-  struct Gluing {
-    double left = 1, right = 1, along = 0;
-  };
-  Gluing gluing(int border, bool atStart) const;
-
+  Gluing gluingOf(int border, bool atStart) const;
+  SplineSurface surfaceOf(int chart) const;
   std::vector<int> offsets() const;
   std::vector<Condition> conditions() const;
   void addBorder(int index, const std::vector<int>& offset, std::vector<Condition>& conditions) const;
 
   const Layout& layout_;
-  std::map<std::pair<int, bool>, Gluing>
-      gluing_;  ///< by border and whether at its start; the others are even
 };
 
 }  // namespace trimquad

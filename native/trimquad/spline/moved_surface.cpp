@@ -96,7 +96,7 @@ std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const st
   auto v = lineOf(surface.knotsV, surface.degreeV, false);
   if (!u || !v) return {};
   SplineSpace space{std::move(*u), std::move(*v)};
-  const Fairness plate{kPlate, kPlate, {{space.u.breaks.front(), space.v.breaks.front()}}, HUGE_VAL};
+  const Fairness plate{kPlate, kPlate, {{{space.u.breaks.front(), space.v.breaks.front()}, HUGE_VAL}}};
   double left = 0;  // of the moves, by their errors
   for (const auto& move : moves) left = std::max(left, move.by.norm() / move.error);
   left *= kWorthWhile;

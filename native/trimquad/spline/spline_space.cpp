@@ -158,8 +158,8 @@ std::vector<double> SplineLine::knots() const {
 
 bool Fairness::isStiff(const SplineLine& u, int i, const SplineLine& v, int j) const {
   const Eigen::Vector2d low(u.breaks[i], v.breaks[j]), high(u.breaks[i + 1], v.breaks[j + 1]);
-  return std::any_of(stiffAt.begin(), stiffAt.end(), [&](const Eigen::Vector2d& x) {
-    return (x - x.cwiseMax(low).cwiseMin(high)).norm() < stiffReach;
+  return std::any_of(stiff.begin(), stiff.end(), [&](const StiffPlace& place) {
+    return (place.at - place.at.cwiseMax(low).cwiseMin(high)).norm() < place.reach;
   });
 }
 

@@ -46,9 +46,12 @@ struct Datum {
 /// Times the square of a knot rectangle's area where that is below 1 quad^2.
 struct Fairness {
   double withData = 0, withoutData = 0;  ///< on knot rectangles that hold data, and on the others
-  /// Knot rectangles within `stiffReach` of these count as larger ones do.
-  std::vector<Eigen::Vector2d> stiffAt = {};
-  double stiffReach = 0;  ///< quads
+  /// Knot rectangles that come that near to one of these count as larger ones do.
+  struct StiffPlace {
+    Eigen::Vector2d at;
+    double reach;  ///< quads
+  };
+  std::vector<StiffPlace> stiff = {};
   /// On a knot rectangle that such a square touches the weight is at least its factor times `withData`.
   struct Spot {
     int chart;

@@ -83,7 +83,7 @@ TEST(FitFolds, cellsAroundSamplesHaveOneOfThemAsACorner) {
 TEST(FitFolds, spotsGrowStifferWhileTheyFoldAndGiveWayWhereTheyFail) {
   const auto fine = [](const FitPlace&) { return 0.25; };
   const FitPlace fold{0, {3, 3}}, near{0, {3.2, 3}}, elsewhere{1, {3, 3}};
-  FoldSpots spots;
+  FoldSpots spots({});
   spots.update({fold, near}, {}, fine);
   ASSERT_EQ(spots.spots().size(), 1u) << "the second lies in the spot of the first";
   EXPECT_EQ(spots.spots()[0].factor, 1);
@@ -124,7 +124,7 @@ TEST(FitFolds, fairnessGrowsOnTheChosenChartsUntilItsStepsAreDoneOrTheToleranceC
 }
 
 TEST(FitFolds, whereKnotIntervalsAreWideThereAreNoSpots) {
-  FoldSpots spots;
+  FoldSpots spots({});
   spots.update({{0, {3, 3}}}, {}, [](const FitPlace&) { return 2.0; });
   EXPECT_TRUE(spots.spots().empty());
   EXPECT_FALSE(spots.coverFolds());
