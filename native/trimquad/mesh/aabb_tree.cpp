@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kLeafSize = 4;
-/// Median splits halve the number of triangles, so that 64 levels hold any number of them.
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+/// Median splits halve the number of triangles, so that 64 levels hold any number of them.
 constexpr int kStackSize = 64;
 
 /// Share of the way from a to b at which the segment is closest to p.
@@ -129,8 +129,8 @@ std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, double 
   Hit best{-1, p, Vector3d::Zero(), squaredDistance};
   while (depth > 0) {
     const Entry entry = stack[--depth];
-    if (entry.squaredDistance > best.squaredDistance ||
-        (best.triangle >= 0 && entry.squaredDistance == best.squaredDistance))
+    if (best.triangle < 0 ? entry.squaredDistance > best.squaredDistance
+                          : entry.squaredDistance >= best.squaredDistance)
       continue;
     const Node& node = nodes_[entry.node];
     for (int i = node.first; i < node.first + node.count; ++i) {
@@ -140,7 +140,8 @@ std::optional<TriangleTree::Hit> TriangleTree::search(const Vector3d& p, double 
       const Vector3d barycentric = closestOnTriangle(p, a, b, c);
       const Vector3d point = barycentric[0] * a + barycentric[1] * b + barycentric[2] * c;
       const double squared = (point - p).squaredNorm();
-      if (squared < best.squaredDistance || (best.triangle < 0 && squared == best.squaredDistance))
+      // The first one counts even if the distance is not a number.
+      if (best.triangle < 0 ? !(squared > best.squaredDistance) : squared < best.squaredDistance)
         best = {order_[i], point, barycentric, squared};
     }
     if (node.count > 0) continue;

@@ -438,18 +438,6 @@ std::vector<JoinedSpace::Condition> JoinedSpace::conditions() const {
   return result;
 }
 
-SplineSurface JoinedSpace::surfaceOf(int chart) const {
-  const SplineSpace& space = charts[chart];
-  SplineSurface s;
-  s.degreeU = space.u.degree;
-  s.degreeV = space.v.degree;
-  s.knotsU = space.u.knots();
-  s.knotsV = space.v.knots();
-  s.countU = space.u.unknowns();
-  s.countV = space.v.unknowns();
-  return s;
-}
-
 namespace {
 
 Eigen::Vector3d middleOf(const std::vector<std::vector<Datum>>& data) {
@@ -468,7 +456,7 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
   std::iota(all.begin(), all.end(), 0);
   std::vector<SplineSurface> surfaces;
   for (const int c : all) {
-    surfaces.push_back(surfaceOf(c));
+    surfaces.push_back(charts[c].emptySurface());
     surfaces.back().poles.assign(charts[c].poles(), middleOf(data));
   }
   return leastSquares(data, fairness, all, std::move(surfaces), progress);

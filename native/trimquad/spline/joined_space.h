@@ -76,7 +76,6 @@ class JoinedSpace : public JoinedKnots {
   static Eigen::MatrixXd satisfying(const std::vector<Condition>& conditions, const SparseSolver& solver,
                                     Eigen::MatrixXd x, double rounding, const Progress& progress);
   Gluing gluingOf(int border, bool atStart) const;
-  SplineSurface surfaceOf(int chart) const;
   std::vector<int> offsets() const;
   std::vector<Condition> conditions() const;
   void addBorder(int index, const std::vector<int>& offset, std::vector<Condition>& conditions) const;

@@ -81,13 +81,7 @@ SpaceCurve clampedPeriod(const SplineLine& line, const std::vector<Eigen::Vector
 }
 
 SplineSurface surfaceOf(const SplineSpace& space, const Numbering& number, const Eigen::MatrixXd& poles) {
-  SplineSurface s;
-  s.degreeU = space.u.degree;
-  s.degreeV = space.v.degree;
-  s.knotsU = space.u.knots();
-  s.knotsV = space.v.knots();
-  s.countU = space.u.unknowns();
-  s.countV = space.v.unknowns();
+  SplineSurface s = space.emptySurface();
   s.closedU = space.u.closed;
   for (int j = 0; j < s.countV; ++j) {
     std::vector<Eigen::Vector3d> row;
@@ -154,6 +148,17 @@ std::vector<double> SplineLine::knots() const {
     result.push_back(breaks[i - turn * n] + turn * period);
   }
   return result;
+}
+
+SplineSurface SplineSpace::emptySurface() const {
+  SplineSurface s;
+  s.degreeU = u.degree;
+  s.degreeV = v.degree;
+  s.knotsU = u.knots();
+  s.knotsV = v.knots();
+  s.countU = u.unknowns();
+  s.countV = v.unknowns();
+  return s;
 }
 
 bool Fairness::isStiff(const SplineLine& u, int i, const SplineLine& v, int j) const {

@@ -75,6 +75,8 @@ struct SplineSpace {
   SplineLine u, v;
 
   int poles() const { return u.unknowns() * v.unknowns(); }
+  /// A surface over its knots, without poles.
+  SplineSurface emptySurface() const;
 
   /// The spline surface that minimises sum weight |S - point|^2 + fairness * integral of Suu^2 + 2 Suv^2 +
   /// Svv^2, where little of the distance counts along the directions in which a datum is free. Closed splines
