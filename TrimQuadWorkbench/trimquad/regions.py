@@ -235,16 +235,19 @@ def _try_region(item, index, result, progress):
                                 item, options)
         if options.merge_slivers > 0:
             load().merge_slivers(item.quads, options.merge_slivers)
-    if options.wants("fit") and not _fit_one_surface(item, result, progress):
+    if options.wants("fit") and not _fit_around_few_lines(item, result, progress):
         item.other_maps.append(OWN_MAP)
         item.fitted = _run(item, progress, "fit", fit, item, result)
 
 
-def _fit_one_surface(item, result, progress):
-    """A single surface for a region whose own map has singularities, and so charts around them. Whether there is one that
-    does not fold."""
-    return bool(item.singularities) and fit_over_another_map(item, result, progress, [WITHOUT_SINGULARITIES],
-                                                             takes=lambda fitted: not fitted.folded)
+def _fit_around_few_lines(item, result, progress):
+    """Surfaces for a region whose own map has singularities, and so charts around them: a single one, if there is one that
+    does not fold; else several that go on behind small holes, where lines between charts would end otherwise. Whether
+    there are any."""
+    if not item.singularities:
+        return False
+    single = fit_over_another_map(item, result, progress, [WITHOUT_SINGULARITIES], takes=lambda fitted: not fitted.folded)
+    return single or fit_over_another_map(item, result, progress, [BEHIND_HOLES])
 
 
 def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda fitted: True):

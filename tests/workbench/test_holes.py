@@ -316,6 +316,17 @@ def test_where_nothing_fits_surfaces_go_on_behind_small_holes_and_the_quads_stay
     assert len(points) == region.region.vertices, "the map of the quads is that of the region itself"
 
 
+def test_several_surfaces_go_on_behind_small_holes_as_lines_between_them_would_end_there():
+    result = trimquad.convert(pierced_sphere(), trimquad.Options(quads=100, features="ignore"))
+    (region,) = result.regions
+    assert region.error is None and region.fitted_from.holes["bridged"] == 2
+    assert region.holes is None and region.region.boundary_loops == 2
+    assert len(result.shape.Faces) > 1
+    result.shape.check(True)
+    points, _, _ = region.map
+    assert len(points) == region.region.vertices, "the map of the quads is that of the region itself"
+
+
 @pytest.mark.parametrize("folds, control_points, taken", [(0, 400, True), (0, 401, False), (1, 10, False)])
 def test_folds_give_way_to_surfaces_without_that_need_no_more_control_points(monkeypatch, folds, control_points, taken):
     def fitted(folds, control_points):

@@ -11,6 +11,10 @@ namespace {
 /// Largest factor of the fairness around places that stay turned over, and how far around, quads.
 constexpr double kStiffest = 1e5, kWidestSpot = 1;
 
+/// Looks at a surface between feet that are a knot interval apart, along a side; and between any at most.
+constexpr double kLooksPerInterval = 4;
+constexpr int kMostLooks = 6;
+
 /// Factor of the fairness on a knot rectangle where the deviations around it are below the first part of the
 /// tolerance; its inverse where they are above the second.
 constexpr double kStiffensWithin = 4, kWell = 0.5, kClosely = 0.9;
@@ -65,32 +69,65 @@ bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<Surf
   });
 }
 
-std::vector<FitPlace> placesAway(const std::vector<SplineSurface>& surfaces,
-                                 const std::vector<FitPlace>& feet,
-                                 const std::vector<std::array<int, 3>>& cells, const TriangleTree& region,
-                                 double distance, int threads, const Progress& progress) {
-  std::vector<char> isAway(cells.size(), 0);
-  const auto middle = [&](const std::array<int, 3>& cell) {
-    const FitPlace& a = feet[cell[0]];
-    const auto& surface = surfaces[a.chart];
-    const Eigen::Vector2d x = a.parameter + (wayTo(surface, a.parameter, feet[cell[1]].parameter) +
-                                             wayTo(surface, a.parameter, feet[cell[2]].parameter)) /
-                                                3;
-    return Eigen::Vector2d(surface.wrappedU(x[0]), x[1]);
+BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
+                        const std::vector<FitPlace>& feet, const std::vector<std::array<int, 3>>& cells,
+                        const FitView& view, const TriangleTree* region, double distance, int threads,
+                        const Progress& progress) {
+  enum class Look { Good, Away, TurnedOver };
+  struct Found {
+    Look look = Look::Good;
+    FitPlace at = {};
   };
+  const auto lookAt = [&](const FitPlace& x, const std::array<int, 3>& cell) {
+    const auto jet = surfaces[x.chart].jet(x.parameter[0], x.parameter[1]);
+    if (region && region->closest(jet.s).squaredDistance > distance * distance) return Look::Away;
+    const Eigen::Vector3d normal = jet.su.cross(jet.sv);
+    const bool agrees =
+        std::any_of(cell.begin(), cell.end(), [&](int i) { return samples[i].agrees(normal); });
+    return agrees || view.facesLikewise(jet.s, normal) ? Look::Good : Look::TurnedOver;
+  };
+  const auto lookWithin = [&](int chart, const std::array<int, 3>& cell) -> Found {
+    std::array<Eigen::Vector2d, 3> corner;
+    for (int k = 0; k < 3; ++k) {
+      const auto seen = view.seenFrom(chart, feet[cell[k]]);
+      if (!seen) return {};
+      corner[k] = k == 0 ? *seen : Eigen::Vector2d(corner[0] + wayTo(surfaces[chart], corner[0], *seen));
+    }
+    const Eigen::Vector2d a = corner[1] - corner[0], b = corner[2] - corner[0];
+    const double extent = std::max({a.norm(), b.norm(), (a - b).norm()});
+    const FitPlace first{chart, {surfaces[chart].wrappedU(corner[0][0]), corner[0][1]}};
+    const int steps =
+        std::clamp(int(std::ceil(kLooksPerInterval * extent / view.knotInterval(first))), 1, kMostLooks);
+    for (int i = 0; i < steps; ++i)
+      for (int j = 0; i + j < steps; ++j) {
+        const Eigen::Vector2d x = corner[0] + ((i + 1. / 3) * a + (j + 1. / 3) * b) / steps;
+        const FitPlace at{chart, {surfaces[chart].wrappedU(x[0]), x[1]}};
+        if (!view.isInChart(at)) continue;
+        if (const Look look = lookAt(at, cell); look != Look::Good) return {look, at};
+      }
+    return {};
+  };
+  std::vector<std::array<Found, 3>> found(cells.size());
   parallelParts(int(cells.size()), threads, [&](int begin, int end) {
     progress.check();
     for (int k = begin; k < end; ++k) {
-      const auto& [i, j, l] = cells[k];
-      if (feet[i].chart != feet[j].chart || feet[i].chart != feet[l].chart) continue;
-      const Eigen::Vector2d x = middle(cells[k]);
-      const Eigen::Vector3d p = surfaces[feet[i].chart].point(x[0], x[1]);
-      isAway[k] = region.closest(p).squaredDistance > distance * distance;
+      const auto& cell = cells[k];
+      for (int corner = 0; corner < 3; ++corner) {
+        const int chart = feet[cell[corner]].chart;
+        const bool isNew =
+            std::none_of(cell.begin(), cell.begin() + corner, [&](int i) { return feet[i].chart == chart; });
+        if (isNew) found[k][corner] = lookWithin(chart, cell);
+      }
     }
   });
-  std::vector<FitPlace> result;
+  BetweenFeet result;
   for (std::size_t k = 0; k < cells.size(); ++k)
-    if (isAway[k]) result.push_back({feet[cells[k][0]].chart, middle(cells[k])});
+    for (const auto& [look, at] : found[k]) {
+      if (look == Look::Away) result.away.push_back(at);
+      if (look != Look::TurnedOver) continue;
+      result.turnedOver.push_back(at);
+      result.turnedOverCells.push_back(int(k));
+    }
   return result;
 }
 

@@ -30,12 +30,31 @@ std::vector<std::array<int, 3>> cellsAround(const std::vector<std::array<int, 3>
 bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
               const std::vector<std::array<int, 3>>& cells, const TriangleTree& region, double distance);
 
-/// Middles of such triangles where a surface is farther from the region than that.
-/// \param feet of the samples
-std::vector<FitPlace> placesAway(const std::vector<SplineSurface>& surfaces,
-                                 const std::vector<FitPlace>& feet,
-                                 const std::vector<std::array<int, 3>>& cells, const TriangleTree& region,
-                                 double distance, int threads, const Progress& progress);
+/// Places between the feet of samples.
+struct BetweenFeet {
+  std::vector<FitPlace> away;        ///< a surface is farther from the region than that
+  std::vector<FitPlace> turnedOver;  ///< a surface is turned over against the samples around
+  std::vector<int> turnedOverCells;  ///< those around them, once or more
+};
+
+/// What the fit knows of its surfaces.
+struct FitView {
+  /// A place in the plane of a chart; none where that is not next to its own.
+  std::function<std::optional<Eigen::Vector2d>(int chart, const FitPlace&)> seenFrom;
+  std::function<bool(const FitPlace&)> isInChart;  ///< not beyond a border
+  /// The longer side of its knot rectangle, quads.
+  std::function<double(const FitPlace&)> knotInterval;
+  /// Whether the region faces that way near a point.
+  std::function<bool(const Eigen::Vector3d& p, const Eigen::Vector3d& normal)> facesLikewise;
+};
+
+/// Looks at the surfaces within small triangles between samples, as far apart as their feet are: feet avoid
+/// bulges and folds between them.
+/// \param feet of the samples  \param region  none where nothing can be away from it
+BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
+                        const std::vector<FitPlace>& feet, const std::vector<std::array<int, 3>>& cells,
+                        const FitView& view, const TriangleTree* region, double distance, int threads,
+                        const Progress& progress);
 
 /// As much fairness on the knot rectangles of some charts as the tolerance allows: more where samples on one
 /// and around it are well within, less where they come close to it, but no less than without.

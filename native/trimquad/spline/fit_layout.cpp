@@ -207,6 +207,35 @@ class LayoutFit : public FitRounds {
     return false;
   }
 
+  std::optional<Eigen::Vector2d> seenFrom(int chart, const FitPlace& x) const override {
+    if (x.chart == chart) return x.parameter;
+    std::optional<Eigen::Vector2d> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& side : sides_[x.chart]) {
+      if (side.neighbour != chart || side.border->feature) continue;
+      const Eigen::Vector2d end = side.start + side.length * side.along;
+      const double distance =
+          (x.parameter - x.parameter.cwiseMax(side.start.cwiseMin(end)).cwiseMin(side.start.cwiseMax(end)))
+              .norm();
+      if (distance >= least) continue;
+      least = distance;
+      nearest = Layout::apply(side.over, layout_.scale, x.parameter);
+    }
+    return nearest;
+  }
+  bool isInChart(const FitPlace& x) const override {
+    return std::none_of(sides_[x.chart].begin(), sides_[x.chart].end(), [&](const BorderSide& side) {
+      const double s = (x.parameter - side.start).dot(side.along);
+      return s >= 0 && s <= side.length && (x.parameter - side.start).dot(side.inward) < 0;
+    });
+  }
+
+  bool isOnCrease(const FitPlace& x) const override {
+    return std::any_of(sides_[x.chart].begin(), sides_[x.chart].end(), [&](const BorderSide& side) {
+      return side.border->feature && side.holds(x.parameter);
+    });
+  }
+
   /// The foot of a point on the surfaces, from a place near it, over borders where need be.
   Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const override {
     const auto distance = [&](const FitPlace& x) {

@@ -9,6 +9,7 @@
 
 #include "trimquad/base/parallel.h"
 #include "trimquad/mesh/triangle_surface.h"
+#include "trimquad/spline/parameter_smoothing.h"
 
 namespace trimquad {
 namespace {
@@ -58,9 +59,7 @@ constexpr int kManyPoles = 40000;
 constexpr double kNearWithMany = 1.5;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
-/// Part of the samples at which the surface may be turned over in folds within what is enough, where no
-/// surface without them is found; and rounds that are spent on getting rid of them.
-constexpr double kSmallFolds = 3e-3;
+/// Rounds that are spent on getting rid of folds within what is enough.
 constexpr int kFoldPatience = 8;
 /// Rounds that are spent on getting rid of bulges between samples.
 constexpr int kBulgePatience = 5;
@@ -125,7 +124,7 @@ FittedSurface FitRounds::rounds() {
     if (deviation_.turnedOver.empty()) closestClean_.note(deviation_.max, poles());
     if (best_ > tolerance_) progress_.report(std::log(start_ / best_) / std::log(start_ / tolerance_));
     if (deviation_.max <= tolerance_ && deviation_.turnedOver.empty() && verified(tolerance_, 0) &&
-        result_.bulges == 0)
+        result_.bulges == 0 && result_.folded.empty())
       return economised();
     keepIfEnough();
     if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
@@ -136,8 +135,10 @@ FittedSurface FitRounds::rounds() {
     } else {
       if (policy_.takesBack && corrections_ > 0 && deviation_.max > beforeCorrection_.deviation.max)
         restore(std::move(beforeCorrection_));
-      refine();
-      chooseParameters();
+      if (refine())
+        chooseParameters();
+      else
+        correct();
     }
   }
   throw unreachable();
@@ -193,7 +194,7 @@ void FitRounds::solve() {
                      region_.name);
   result_.surfaces = std::move(*surfaces);
   previous_ = deviation_;
-  deviation_ = measure(samples_, feet_);
+  measureFit();
   failing_ = places(samples_, threshold(deviation_.max));
   noteTurned(samples_, deviation_);
 }
@@ -273,12 +274,35 @@ void FitRounds::correct() {
   ++corrections_;
   if (policy_.takesBack || slides_) beforeCorrection_ = state();
   moveTo(feet_, samples_);
+  if (policy_.several) smoothParameters();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const double part = samples_[i].distance / deviation_.max;
     emphasis_[i] = slides_ ? std::min(kMostEmphasis, emphasis_[i] * (1 + kSlidingEmphasis * part * part))
                            : 0.5 * (emphasis_[i] + 1 + kEmphasis * part * part);
   }
-  unfold(deviation_.turnedOver);
+  unfold(deviation_.turnedOver, between_);
+}
+
+/// How far feet are from the map's parameters, averaged over about a knot interval: what is left then bends
+/// no more closely than the knots can, which fold otherwise. Samples across a border and on creases keep
+/// their feet.
+void FitRounds::smoothParameters() {
+  std::vector<Eigen::Vector2d> moves(samples_.size(), Eigen::Vector2d::Zero());
+  std::vector<std::optional<int>> chart(samples_.size());
+  std::vector<char> held(samples_.size(), 1);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const FitPlace &map = ofMap_[i], foot{samples_[i].chart, samples_[i].parameter};
+    const auto seen = seenFrom(map.chart, foot);
+    if (!seen) continue;
+    chart[i] = map.chart;
+    held[i] = foot.chart != map.chart || isOnCrease(map);
+    moves[i] = *seen - map.parameter;
+  }
+  smoothMoves(cells_, chart, held, moves);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const FitPlace x{ofMap_[i].chart, ofMap_[i].parameter + moves[i]};
+    if (!held[i] && isInChart(x)) samples_[i].parameter = x.parameter;
+  }
 }
 
 /// Back to before the correction that turned the surface over somewhere; from here on all of the distances
@@ -290,8 +314,10 @@ void FitRounds::stopSliding() {
   emphasis_.assign(samples_.size(), 1);
 }
 
-/// Around samples where the surface is turned over: back to the map's parameters.
-void FitRounds::unfold(const std::vector<int>& turnedOver) {
+/// Around samples where the surface is turned over, or beside which it is: back to the map's parameters.
+void FitRounds::unfold(std::vector<int> turnedOver, const BetweenFeet& between) {
+  for (const int k : between.turnedOverCells)
+    turnedOver.insert(turnedOver.end(), cells_[k].begin(), cells_[k].end());
   for (const auto& cell : cellsAround(cells_, turnedOver))
     for (const int i : cell) {
       samples_[i].chart = ofMap_[i].chart;
@@ -310,9 +336,11 @@ void FitRounds::chooseParameters() {
   takeSamples();
   if (!corrected) return;
   const Deviation found = measure(samples_, feet_);
+  const BetweenFeet between = lookBetweenFeet(found);
   moveTo(feet_, samples_);
+  if (policy_.several) smoothParameters();
   const auto emphasis = emphasis_;
-  unfold(found.turnedOver);
+  unfold(found.turnedOver, between);
   solve();
   State withFeet = state();
   emphasis_ = emphasis;
@@ -347,59 +375,6 @@ void FitRounds::keepIfEnough() {
   if (isEnough && better) kept_ = result_;
   failing_ = failing;
   turned_ = turned;
-}
-
-void FitRounds::continueFrom(const FittedSurface& fitted) {
-  const auto& from = *fitted.continuation;
-  result_ = fitted;
-  fairness_ = from.fairness;
-  joinedKnots()->charts = from.sampledOver;
-  takeSamples();
-  *joinedKnots() = from.knots;  // samples change the tangents at singularities
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    samples_[i].chart = from.samples[i].chart;
-    samples_[i].parameter = from.samples[i].parameter;
-    emphasis_[i] = from.samples[i].emphasis;
-  }
-  deviation_ = measure(samples_, feet_);
-}
-
-std::optional<FittedSurface> FitRounds::smoothed(const FittedSurface& fitted,
-                                                 const std::map<int, int>& steps) {
-  continueFrom(fitted);
-  std::vector<const SplineSpace*> spaces;
-  for (int c = 0; c < charts(); ++c) spaces.push_back(&space(c));
-  std::vector<int> chosen;
-  for (const auto& [chart, count] : steps) chosen.push_back(chart);
-  std::optional<FittedSurface> smooth;
-  for (RectangleStiffness stiffness(spaces, steps); stiffness.update(samples_, tolerance_);) {
-    fairness_.stiffness = stiffness.factors();
-    auto surfaces = partOfLeastSquares(dataOf(samples_, emphasis_), chosen, result_.surfaces);
-    if (!surfaces) break;
-    result_.surfaces = std::move(*surfaces);
-    deviation_ = measure(samples_, feet_);
-    if (deviation_.max <= enough_ && verified(enough_, kSmallFolds) && result_.bulges <= fitted.bulges)
-      smooth = result_;
-  }
-  if (smooth) smooth->continuation = fitted.continuation;
-  return smooth;
-}
-
-std::optional<FittedSurface> FitRounds::closer(const FittedSurface& fitted, const std::vector<int>& chosen) {
-  continueFrom(fitted);
-  halveKnots(chosen);
-  const double before = deviation_.rms;
-  std::optional<FittedSurface> result;
-  for (corrections_ = 0; corrections_ <= kMaxCorrections; correct()) {
-    auto surfaces = partOfLeastSquares(dataOf(samples_, emphasis_), chosen, result_.surfaces);
-    if (!surfaces) break;
-    result_.surfaces = std::move(*surfaces);
-    deviation_ = measure(samples_, feet_);
-    if (deviation_.max <= enough_ && deviation_.rms < before && verified(enough_, kSmallFolds) &&
-        result_.bulges <= fitted.bulges)
-      result = result_;
-  }
-  return result;
 }
 
 /// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
@@ -453,18 +428,6 @@ std::vector<ChartDeviation> FitRounds::deviationsByChart(const std::vector<Surfa
   return result;
 }
 
-std::shared_ptr<const FittedSurface::Continuation> FitRounds::continuation() {
-  const JoinedKnots* knots = joinedKnots();
-  if (!knots) return {};
-  auto result = std::make_shared<FittedSurface::Continuation>();
-  result->knots = *knots;
-  result->fairness = fairness_;
-  result->sampledOver = sampledOver_;
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    result->samples.push_back({samples_[i].chart, samples_[i].parameter, emphasis_[i]});
-  return result;
-}
-
 /// Whether other samples keep the tolerance as well; counts bulges between them too. \param folds part of
 /// them that may be turned over
 bool FitRounds::verified(double tolerance, double folds) {
@@ -491,17 +454,41 @@ bool FitRounds::verified(double tolerance, double folds) {
     noteTurned(control, found);
     return false;
   }
-  // Feet avoid bulges between them. Of a true surface the triangles are a coarse picture.
-  if (!region_.surface) {
-    const auto bulges = placesAway(result_.surfaces, feet_, cells_, triangles_, enough_, threads_, progress_);
-    result_.bulges = int(bulges.size());
-    if (!bulges.empty()) {
-      failing_ = bulges;
-      turned_.clear();
-    }
+  result_.bulges = int(between_.away.size());
+  for (const auto& x : between_.turnedOver) {
+    result_.folded.push_back({result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]), x.chart});
+    folds_.push_back(x);
+  }
+  if (!between_.away.empty() || !between_.turnedOver.empty()) {
+    failing_ = between_.away;
+    turned_ = between_.turnedOver;
+    if (!turned_.empty()) turnedPoint_ = result_.folded.back().point;
   }
   result_.continuation = continuation();
   return true;
+}
+
+/// What the surfaces are between the feet, where they come close.
+BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation) const {
+  if (deviation.max > kClose * tolerance_) return {};
+  const FitView view{
+      [&](int chart, const FitPlace& x) { return seenFrom(chart, x); },
+      [&](const FitPlace& x) { return isInChart(x); }, [&](const FitPlace& x) { return knotInterval(x); },
+      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); }};
+  // Of a true surface the triangles are a coarse picture.
+  const TriangleTree* triangles = region_.surface ? nullptr : &triangles_;
+  return betweenFeet(result_.surfaces, samples_, feet_, cells_, view, triangles, enough_, threads_,
+                     progress_);
+}
+
+void FitRounds::measureFit() {
+  deviation_ = measure(samples_, feet_);
+  between_ = lookBetweenFeet(deviation_);
+}
+
+double FitRounds::knotInterval(const FitPlace& x) const {
+  const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
+  return std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
 }
 
 /// Deviation above which a sample asks for knots.
@@ -521,15 +508,17 @@ bool FitRounds::correctionPays() const {
          deviation_.rms <= kCorrectionPays * previous_.rms;
 }
 
-void FitRounds::refine() {
+/// More knots, or else more fairness. Whether there are others now.
+bool FitRounds::refine() {
   if (failing_.empty()) {
     // Within tolerance, but turned over somewhere.
-    if (insertKnots() || smoothsFolds()) return;
+    if (insertKnots()) return true;
+    if (smoothsFolds()) return false;
     if (++stiffened_ > 3)
       throw stageError("fit", "the surface folds over; use a smaller edge length, or cut the region there",
                        region_.name, turnedPoint_);
     stiffen(30);
-    return;
+    return true;
   }
   idle_ = best_ < 0.8 * atRefinement_ ? 0 : idle_ + 1;
   thorough_ = stalled();
@@ -538,10 +527,12 @@ void FitRounds::refine() {
   const bool far = policy_.several && best_ > kFar * tolerance_ && poles() > kFewPoles;
   const bool hopeless = policy_.several && poles() > kManyPoles && best_ > kNearWithMany * tolerance_;
   const bool manyFolds = double(deviation_.turnedOver.size()) > kSmallFolds * double(samples_.size());
-  const bool vain = poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
-                                            (manyFolds && poles() > kVainCleanPoles * closestClean_.poles));
+  const bool vain =
+      poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
+                              (manyFolds && poles() > kVainCleanPoles * double(closestClean_.poles)));
   if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > maxPoles_)
     throw unreachable();
+  return true;
 }
 
 /// The surfaces, which are within the tolerance, or such over fewer knots. Knots are halved where they do not
@@ -575,18 +566,18 @@ bool FitRounds::fitsRespaced() {
       return false;
     correct();
   }
-  return deviation_.turnedOver.empty() && verified(tolerance_, 0) && result_.bulges == 0;
+  return deviation_.turnedOver.empty() && verified(tolerance_, 0) && result_.bulges == 0 &&
+         result_.folded.empty();
 }
 
 /// More fairness where the surfaces are turned over in few places.
 void FitRounds::stiffenFolds() {
   if (deviation_.max <= kClose * tolerance_ &&
-      double(deviation_.turnedOver.size()) <= kSmallFolds * double(samples_.size()))
+      double(deviation_.turnedOver.size()) <= kSmallFolds * double(samples_.size())) {
     for (const int i : deviation_.turnedOver) folds_.push_back(feet_[i]);
-  foldSpots_.update(folds_, failing_, [&](const FitPlace& x) {
-    const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
-    return std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
-  });
+    folds_.insert(folds_.end(), between_.turnedOver.begin(), between_.turnedOver.end());
+  }
+  foldSpots_.update(folds_, failing_, [&](const FitPlace& x) { return knotInterval(x); });
   fairness_.spots = foldSpots_.spots();
   folds_.clear();
 }
@@ -597,7 +588,7 @@ void FitRounds::stiffen(double factor) {
 }
 
 FitRounds::State FitRounds::state() const {
-  return {samples_, feet_, failing_, result_.surfaces, deviation_};
+  return {samples_, feet_, failing_, result_.surfaces, deviation_, between_};
 }
 
 void FitRounds::restore(State state) {
@@ -606,6 +597,7 @@ void FitRounds::restore(State state) {
   failing_ = std::move(state.failing);
   result_.surfaces = std::move(state.surfaces);
   deviation_ = state.deviation;
+  between_ = std::move(state.between);
 }
 
 int FitRounds::poles() const {

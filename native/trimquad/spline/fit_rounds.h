@@ -71,6 +71,12 @@ class FitRounds {
   };
   /// The foot of a point, from a place near it.
   virtual Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const = 0;
+  /// Of several surfaces: FitView::seenFrom, isInChart; whether a place lies on a crease that they follow.
+  virtual std::optional<Eigen::Vector2d> seenFrom(int /*chart*/, const FitPlace& x) const {
+    return x.parameter;
+  }
+  virtual bool isInChart(const FitPlace&) const { return true; }
+  virtual bool isOnCrease(const FitPlace&) const { return false; }
   /// By chart. \param emphasis by sample: factor of its weight
   std::vector<std::vector<Datum>> dataOf(const std::vector<SurfaceSample>& samples,
                                          const std::vector<double>& emphasis) const;
@@ -101,11 +107,16 @@ class FitRounds {
   double toleranceInQuads_ = 0;
 
  private:
+  /// Part of the samples at which the surface may be turned over in folds within what is enough, where no
+  /// surface without them is found.
+  static constexpr double kSmallFolds = 3e-3;
+
   struct State {
     std::vector<SurfaceSample> samples;
     std::vector<FitPlace> feet, failing;
     std::vector<SplineSurface> surfaces;
     Deviation deviation;
+    BetweenFeet between;
   };
 
   FittedSurface rounds();
@@ -118,11 +129,15 @@ class FitRounds {
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
                                       const std::vector<int>& chosen);
+  BetweenFeet lookBetweenFeet(const Deviation& deviation) const;
+  void measureFit();
+  double knotInterval(const FitPlace& x) const;
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
   void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) const;
   void correct();
+  void smoothParameters();
   void stopSliding();
-  void unfold(const std::vector<int>& turnedOver);
+  void unfold(std::vector<int> turnedOver, const BetweenFeet& between);
   void chooseParameters();
   void keepIfEnough();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
@@ -133,7 +148,7 @@ class FitRounds {
   double threshold(double largest) const;
   bool stalled() const { return best_ > 0.5 * atRefinement_; }
   bool correctionPays() const;
-  void refine();
+  bool refine();
   FittedSurface economised();
   bool fitsRespaced();
   void stiffen(double factor);
@@ -151,6 +166,7 @@ class FitRounds {
   std::optional<FittedSurface> kept_;     ///< within what is enough
   FoldSpots foldSpots_;
   Deviation deviation_, previous_;
+  BetweenFeet between_;                                    ///< the feet of `samples_`
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over
   std::vector<FitPlace> feet_, ofMap_;  ///< by sample: where its foot lies; where the map has it
   std::vector<double> emphasis_;        ///< by sample: factor of its weight

@@ -73,6 +73,87 @@ TEST(FitFolds, trianglesBetweenChartsAreLeftOut) {
   EXPECT_TRUE(stayNear(bulging.surfaces, bulging.samples, bulging.cells, bulging.region, 0.01));
 }
 
+/// A plane over [0, 4] x [0, 2] that runs to and fro within 1 < u < 2, and samples around there.
+struct Zigzag {
+  SplineSpace space;
+  std::vector<SplineSurface> surfaces;
+  std::vector<SurfaceSample> samples;
+  std::vector<std::array<int, 3>> cells{{0, 1, 2}, {1, 3, 2}};
+  std::vector<FitPlace> feet;
+  FitView view{[](int chart, const FitPlace& x) {
+                 return x.chart == chart ? std::optional(x.parameter) : std::nullopt;
+               },
+               [](const FitPlace&) { return true; }, [](const FitPlace&) { return 0.25; },
+               [](const Eigen::Vector3d&, const Eigen::Vector3d&) { return false; }};
+
+  Zigzag() {
+    for (int i = 0; i <= 16; ++i) space.u.breaks.push_back(i / 4.0);
+    space.v.breaks = {0, 1, 2};
+    std::vector<Datum> data;
+    for (int i = 0; i < 160; ++i)
+      for (int j = 0; j < 10; ++j) {
+        const Eigen::Vector2d x((i + 0.5) / 40, (j + 0.5) / 5);
+        const double there = x[0] > 1 && x[0] < 2 ? 0.4 * std::sin(2 * M_PI * x[0]) : 0;
+        data.push_back({x, {x[0] + there, x[1], 0}, 1});
+      }
+    surfaces.push_back(*space.leastSquares(data, {1e-9, 1e-9}, Progress()));
+    for (const Eigen::Vector2d& x : {Eigen::Vector2d(0.9, 0.5), Eigen::Vector2d(2.1, 0.5),
+                                     Eigen::Vector2d(2.1, 1.5), Eigen::Vector2d(2.9, 0.5)}) {
+      auto& s = samples.emplace_back();
+      s.normal = s.meshNormal = Eigen::Vector3d::UnitZ();
+      s.parameter = x;
+      feet.push_back({0, x});
+    }
+  }
+  BetweenFeet look() const {
+    return betweenFeet(surfaces, samples, feet, cells, view, nullptr, 0, 1, Progress());
+  }
+};
+
+TEST(FitFolds, aSurfaceThatRunsToAndFroBetweenFeetIsSeen) {
+  const Zigzag zigzag;
+  const auto found = zigzag.look();
+  EXPECT_TRUE(found.away.empty());
+  ASSERT_EQ(found.turnedOver.size(), 1u) << "one place a triangle";
+  EXPECT_GT(found.turnedOver[0].parameter[0], 1);
+  EXPECT_LT(found.turnedOver[0].parameter[0], 2);
+  EXPECT_EQ(found.turnedOverCells, std::vector<int>{0});
+}
+
+TEST(FitFolds, whereTheRegionFacesThatWayTooNothingIsTurnedOver) {
+  Zigzag zigzag;
+  zigzag.view.facesLikewise = [](const Eigen::Vector3d&, const Eigen::Vector3d&) { return true; };
+  EXPECT_TRUE(zigzag.look().turnedOver.empty());
+}
+
+TEST(FitFolds, betweenChartsEachIsLookedAtUpToItsBorder) {
+  Zigzag zigzag;
+  zigzag.surfaces.push_back(zigzag.surfaces[0]);
+  zigzag.feet[1].chart = zigzag.feet[2].chart = 1;
+  EXPECT_TRUE(zigzag.look().turnedOver.empty()) << "they do not see each other";
+  zigzag.view.seenFrom = [](int, const FitPlace& x) { return std::optional(x.parameter); };
+  EXPECT_EQ(zigzag.look().turnedOver.size(), 2u);
+  zigzag.view.isInChart = [](const FitPlace& x) { return (x.parameter[0] < 1) == (x.chart == 0); };
+  const auto found = zigzag.look();
+  ASSERT_EQ(found.turnedOver.size(), 1u);
+  EXPECT_EQ(found.turnedOver[0].chart, 1);
+  zigzag.view.isInChart = [](const FitPlace& x) { return x.parameter[0] < 1; };
+  EXPECT_TRUE(zigzag.look().turnedOver.empty());
+}
+
+TEST(FitFolds, bulgesBetweenFeetOnBothSidesOfASeamAreSeen) {
+  for (const double bulge : {0.0, 0.2}) {
+    Tube tube(bulge);
+    for (auto& s : tube.samples) s.normal = s.meshNormal = Eigen::Vector3d::UnitX();
+    std::vector<FitPlace> feet;
+    for (const auto& s : tube.samples) feet.push_back({0, s.parameter});
+    const auto found = betweenFeet(tube.surfaces, tube.samples, feet, tube.cells, Zigzag().view, &tube.region,
+                                   0.05, 1, Progress());
+    EXPECT_EQ(found.away.size(), bulge > 0 ? 1u : 0u);
+    EXPECT_TRUE(found.turnedOver.empty());
+  }
+}
+
 TEST(FitFolds, cellsAroundSamplesHaveOneOfThemAsACorner) {
   const std::vector<std::array<int, 3>> cells{{0, 1, 2}, {1, 3, 2}, {3, 4, 5}};
   EXPECT_TRUE(cellsAround(cells, {}).empty());
