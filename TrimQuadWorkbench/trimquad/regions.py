@@ -18,8 +18,9 @@ MORE_POLES, FEW_POLES = 5, 1000
 # Work of a region's fits after which no other ways of fitting it are tried; less where it can be cut instead. And the same
 # for a whole model. 1e6 steps take about half a second. Work rather than time, so that results do not depend on the machine.
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
-# After so much, surfaces that have folds, which may do no harm, are not given up for those over another map.
-MOST_WORK_BEFORE_CHOICE = 5e6
+# After so much, surfaces that have folds, which may do no harm, are not given up for those over another map; several only
+# for a single one.
+MOST_WORK_BEFORE_CHOICE = 8e6
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
@@ -52,6 +53,8 @@ OTHER_MAPS = (
     OtherMap(creases_rounded=True, singularities="none"),
     OtherMap(creases_rounded=True, behind_small_holes=True),
 )
+
+SINGLE_SURFACES = tuple(way for way in OTHER_MAPS if way.singularities == "none")
 
 
 class RegionResult:
@@ -193,7 +196,8 @@ def _map_region(item, index, result, progress):
             _try_region(item, index, result, progress)
             if item.fitted is not None and item.fitted.folded and item.work <= MOST_WORK_BEFORE_CHOICE:
                 most = item.fitted.control_points
-                fit_over_another_map(item, result, progress,
+                ways = SINGLE_SURFACES if item.fitted.several else OTHER_MAPS
+                fit_over_another_map(item, result, progress, ways,
                                      takes=lambda fitted: not fitted.folded and fitted.control_points <= most)
         except Error as error:
             if error.kind == "cancelled":

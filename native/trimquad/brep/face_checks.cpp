@@ -35,7 +35,7 @@ bool isBent(const SplineModel& model, const EdgeUse& a, const EdgeUse& b) {
   for (int i = 0; i < kPlacesOfBorder; ++i) {
     const double s = onA.first() + (onA.last() - onA.first()) * (i + 0.5) / kPlacesOfBorder;
     const Eigen::Vector3d m = normal(faceA, onA, s), n = normal(faceB, onB, s);
-    if (m.cross(n).norm() > kBent * m.norm() * n.norm()) return true;
+    if (m.dot(n) <= 0 || m.cross(n).norm() > kBent * m.norm() * n.norm()) return true;
   }
   return false;
 }
