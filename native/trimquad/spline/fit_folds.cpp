@@ -107,27 +107,30 @@ BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::v
       }
     return {};
   };
-  std::vector<std::array<Found, 3>> found(cells.size());
+  const auto lookAround = [&](const std::array<int, 3>& cell) {
+    std::vector<Found> found;
+    for (int corner = 0; corner < 3; ++corner) {
+      const int chart = feet[cell[corner]].chart;
+      if (std::any_of(cell.begin(), cell.begin() + corner, [&](int i) { return feet[i].chart == chart; }))
+        continue;
+      if (const Found here = lookWithin(chart, cell); here.look != Look::Good) found.push_back(here);
+    }
+    return found;
+  };
+  // Nearly all are good, so that those that are not may be looked at twice.
+  std::vector<char> isGood(cells.size(), 1);
   parallelParts(int(cells.size()), threads, [&](int begin, int end) {
     progress.check();
-    for (int k = begin; k < end; ++k) {
-      const auto& cell = cells[k];
-      for (int corner = 0; corner < 3; ++corner) {
-        const int chart = feet[cell[corner]].chart;
-        const bool isNew =
-            std::none_of(cell.begin(), cell.begin() + corner, [&](int i) { return feet[i].chart == chart; });
-        if (isNew) found[k][corner] = lookWithin(chart, cell);
-      }
-    }
+    for (int k = begin; k < end; ++k) isGood[k] = lookAround(cells[k]).empty();
   });
   BetweenFeet result;
-  for (std::size_t k = 0; k < cells.size(); ++k)
-    for (const auto& [look, at] : found[k]) {
-      if (look == Look::Away) result.away.push_back(at);
-      if (look != Look::TurnedOver) continue;
-      result.turnedOver.push_back(at);
-      result.turnedOverCells.push_back(int(k));
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (isGood[k]) continue;
+    for (const auto& [look, at] : lookAround(cells[k])) {
+      (look == Look::Away ? result.away : result.turnedOver).push_back(at);
+      if (look == Look::TurnedOver) result.turnedOverCells.push_back(int(k));
     }
+  }
   return result;
 }
 

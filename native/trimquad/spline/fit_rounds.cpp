@@ -336,7 +336,7 @@ void FitRounds::chooseParameters() {
   takeSamples();
   if (!corrected) return;
   const Deviation found = measure(samples_, feet_);
-  const BetweenFeet between = lookBetweenFeet(found);
+  const BetweenFeet between = lookBetweenFeet(found, false);
   moveTo(feet_, samples_);
   if (policy_.several) smoothParameters();
   const auto emphasis = emphasis_;
@@ -454,6 +454,7 @@ bool FitRounds::verified(double tolerance, double folds) {
     noteTurned(control, found);
     return false;
   }
+  between_ = lookBetweenFeet(deviation_, true);
   result_.bulges = int(between_.away.size());
   for (const auto& x : between_.turnedOver) {
     result_.folded.push_back({result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]), x.chart});
@@ -469,21 +470,21 @@ bool FitRounds::verified(double tolerance, double folds) {
 }
 
 /// What the surfaces are between the feet, where they come close.
-BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation) const {
+BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation, bool forBulges) const {
   if (deviation.max > kClose * tolerance_) return {};
   const FitView view{
       [&](int chart, const FitPlace& x) { return seenFrom(chart, x); },
       [&](const FitPlace& x) { return isInChart(x); }, [&](const FitPlace& x) { return knotInterval(x); },
       [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); }};
   // Of a true surface the triangles are a coarse picture.
-  const TriangleTree* triangles = region_.surface ? nullptr : &triangles_;
+  const TriangleTree* triangles = forBulges && !region_.surface ? &triangles_ : nullptr;
   return betweenFeet(result_.surfaces, samples_, feet_, cells_, view, triangles, enough_, threads_,
                      progress_);
 }
 
 void FitRounds::measureFit() {
   deviation_ = measure(samples_, feet_);
-  between_ = lookBetweenFeet(deviation_);
+  between_ = lookBetweenFeet(deviation_, false);
 }
 
 double FitRounds::knotInterval(const FitPlace& x) const {

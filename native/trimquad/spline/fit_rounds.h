@@ -129,7 +129,7 @@ class FitRounds {
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
                                       const std::vector<int>& chosen);
-  BetweenFeet lookBetweenFeet(const Deviation& deviation) const;
+  BetweenFeet lookBetweenFeet(const Deviation& deviation, bool forBulges) const;
   void measureFit();
   double knotInterval(const FitPlace& x) const;
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
