@@ -300,9 +300,7 @@ class LayoutFit : public FitRounds {
   void softenSingularities() {
     std::set<std::pair<int, int>> softer;
     for (const auto& x : failing_) {
-      const auto& space = space_.charts[x.chart];
-      const double interval = std::max(space.u.width(space.u.spanOf(x.parameter[0])),
-                                       space.v.width(space.v.spanOf(x.parameter[1])));
+      const double interval = knotInterval(x);
       for (std::size_t k = 0; k < singular_[x.chart].size(); ++k) {
         double& reach = space_.stiffReach[x.chart][k];
         if (interval < reach && (singular_[x.chart][k] - x.parameter).norm() < reach + interval)

@@ -69,6 +69,8 @@ class FitRounds {
     FitPlace at, start;    ///< `start`: where the search began, as seen from the foot's chart
     bool limited = false;  ///< a crease ended the way to it
   };
+  /// The longer side of a place's knot rectangle, quads.
+  double knotInterval(const FitPlace& x) const;
   /// The foot of a point, from a place near it.
   virtual Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const = 0;
   /// Of several surfaces: FitView::seenFrom, isInChart; whether a place lies on a crease that they follow.
@@ -131,7 +133,6 @@ class FitRounds {
                                       const std::vector<int>& chosen);
   BetweenFeet lookBetweenFeet(const Deviation& deviation, bool forBulges) const;
   void measureFit();
-  double knotInterval(const FitPlace& x) const;
   void noteTurned(const std::vector<SurfaceSample>& samples, const Deviation& deviation);
   void moveTo(const std::vector<FitPlace>& places, std::vector<SurfaceSample>& samples) const;
   void correct();

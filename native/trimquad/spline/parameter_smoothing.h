@@ -10,7 +10,9 @@ namespace trimquad {
 
 /// Averages the moves of samples' parameters, from the map's to their feet, with those of their neighbours,
 /// over about the knot interval that four of them share. Feet alone crowd and leave gaps beside bends that
-/// knots cannot follow, and a surface through them folds there. \param cells small triangles between samples
+/// knots cannot follow, and a surface through them folds there.
+///
+/// \param cells small triangles between samples
 /// \param chart by sample: in whose plane its move is; none where it has none
 /// \param held  by sample: whether its move stays
 /// \param moves by sample, quads
