@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from . import regions
 from .cuts import bends_sharply, cut_failed
 from .error import Error, cancelled
-from .native import load
+from .native import CHECKER, load
 
 # A surface that crosses itself beyond its trim, or whose trims cross, or in a bend that the tolerance left loose, is fitted
 # again in these ways, one after the other: in a rectangle that fits the region more closely (one surface only), with the
@@ -41,7 +41,7 @@ def trim(result, progress):
     native = load()
     started = time.monotonic()
     elsewhere = 0.0
-    checks, memory = native.FaceChecks(), native.TrimMemory()
+    checks, memory = native.FaceChecks(CHECKER), native.TrimMemory()
     while any(r.fitted is not None for r in result.regions):
         result.exhausted = result.work > regions.MOST_WORK_OF_MODEL
         try:
@@ -95,7 +95,9 @@ def _refit_faulty(result, checks, progress):
     faces = result.spline.faces
     folded = [r.fitted.folded_charts if r.fitted is not None else () for r in result.regions]
     folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
-    for face, faults in zip(faces, checks.faults(result.spline, folded_faces, result.options.threads)):
+    with progress.stage("check") as native_progress:
+        found = checks.faults(result.spline, folded_faces, result.options.threads, native_progress)
+    for face, faults in zip(faces, found):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
     if any([_fit_parts_closer(result.regions[index], result, progress) for index in faulty]):
@@ -238,12 +240,12 @@ def _fit_closer(item, result, progress):
 
 
 def check(result, progress):
-    """OpenCASCADE's check of the whole model, but for faces that cross others: that can take longer than all the rest."""
+    """OpenCASCADE's check of the whole model, also as its STEP file holds it. Faces that cross others were looked for by trim()."""
     if result.native_shape is None:
         return
     started = time.monotonic()
-    with progress.stage("check"):
-        result.faults = load().shape_faults(result.native_shape, False)
+    with progress.stage("check") as native_progress:
+        result.faults = load().FaceChecks(CHECKER).faults_of_whole(result.spline, native_progress)
     result.seconds["trim"] += time.monotonic() - started
     if result.faults:
         shown = "; ".join(result.faults[:3]) + ("; ..." if len(result.faults) > 3 else "")

@@ -1,7 +1,11 @@
 """Loads the compiled stages and says clearly why they cannot be loaded."""
+import os
 import sys
 
 from .error import input_error
+
+# The program that checks shapes for the compiled module, in processes of its own.
+CHECKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "_checker")
 
 _module = None
 

@@ -85,19 +85,28 @@ void bindBrep(py::module_& m) {
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
   py::class_<FaceChecks>(m, "FaceChecks",
-                         "Checks of faces, which are not repeated while these stay the same.")
-      .def(py::init<>())
+                         "OpenCASCADE's checks of a model's STEP file, which are not repeated for faces and "
+                         "pairs of faces that stay the same.")
+      .def(py::init<std::string>(), py::arg("checker"))
       .def("faults", &FaceChecks::faults, py::arg("spline"), py::arg("folded"), py::arg("threads"),
-           Released(),
-           "by face, what BRepCheck and the argument analysis of booleans find wrong with it alone; with "
-           "those in `folded` (indices) also together with each neighbour");
+           py::arg("progress"), Released(),
+           "By face, what BRepCheck and the argument analysis of booleans find wrong with it and with pairs "
+           "of it and another one. Pairs with a face in `folded` (indices) and such as are bent against each "
+           "other come first; the others where nothing is wrong so far.")
+      .def("faults_of_whole", &FaceChecks::faultsOfWhole, py::arg("spline"), py::arg("progress"), Released(),
+           "what they find wrong with the whole, also in memory, but for faces that cross others");
   m.def("face_order", &faceOrder, py::arg("spline"), Released(),
         "by face of the assembled shape, its index among the spline's");
   m.def("deviation_maps", &deviationMapsOf, py::arg("spline"), py::arg("regions"), py::kw_only(),
         py::arg("chord"), py::arg("size"), py::arg("threads"), py::arg("progress"),
         "By face of the spline: points (n, 3), distances from its region (n), triangles (m, 3). `chord` and "
         "`size` bound the triangles' distances from the face and their sides.");
-  m.def("shape_faults", &faults, py::arg("shape"), py::arg("crossings"), Released());
+  m.def(
+      "shape_faults",
+      [](const Shape& shape, bool crossings) {
+        return faults(shape, {.elements = true, .crossings = crossings});
+      },
+      py::arg("shape"), py::arg("crossings"), Released());
   m.def("write_step", &writeStep, py::arg("shape"), py::arg("path"), Released());
   m.def("write_brep", &writeBrep, py::arg("shape"), py::arg("path"), Released());
 }

@@ -240,9 +240,15 @@ def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, rad
     native = joining.load()
 
     class FaceChecks:
-        def faults(self, spline, folded, threads):
+        def __init__(self, checker):
+            pass
+
+        def faults(self, spline, folded, threads, progress):
             whole = len(spline.faces) == 1 and spline is first
             return [["Face1: SelfIntersect"] if whole else [] for _ in spline.faces]
+
+        def faults_of_whole(self, spline, progress):
+            return []
 
     def trim_model(*arguments):
         nonlocal first

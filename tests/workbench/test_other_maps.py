@@ -104,11 +104,14 @@ def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tri
         def __getattr__(self, name):
             return getattr(native, name)
 
-        def FaceChecks(self):
+        def FaceChecks(self, checker):
             return self
 
-        def faults(self, model, folded, threads):
+        def faults(self, model, folded, threads, progress):
             return [["Face1: SelfIntersect"] if len(model.faces) == 1 else [] for _ in model.faces]
+
+        def faults_of_whole(self, model, progress):
+            return []
 
     monkeypatch.setattr(joining, "load", FaultySingles)
     monkeypatch.setattr(joining, "REFITS", ())

@@ -182,7 +182,7 @@ class _AlwaysAtFault:
     def __getattr__(self, name):
         return getattr(self._native, name)
 
-    def FaceChecks(self):
+    def FaceChecks(self, checker):
         return self
 
     def smoothed_charts(self, *arguments):
@@ -195,7 +195,7 @@ class _AlwaysAtFault:
         self.revisions += fitted is not None
         return fitted
 
-    def faults(self, spline, folded, threads):
+    def faults(self, spline, folded, threads, progress):
         self.checks += 1
         return [["Face1: SelfIntersect"]]
 

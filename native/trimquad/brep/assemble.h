@@ -20,15 +20,23 @@ std::vector<Shape> assembledFaces(const SplineModel& model);
 /// By face of `assemble`'s shape, as OpenCASCADE counts them (Face1, Face2, ..): its index in the model.
 std::vector<int> faceOrder(const SplineModel& model);
 
+/// What is looked for in a shape.
+struct FaultKinds {
+  bool elements = true;   ///< faults of its vertices, edges and faces: validity, continuity, small edges
+  bool crossings = true;  ///< elements that cross others, or themselves
+};
+
 /// What is wrong with the shape, one line each ("Edge7: InvalidCurveOnSurface"), empty where nothing is:
 /// OpenCASCADE's validity check, and its check of arguments for boolean operations (self-interference, small
 /// edges, continuity, curves on surfaces), as FreeCAD's "Check geometry" runs them.
-/// \param crossings whether self-interference is looked for, which can take minutes where faces of a model
-/// touch without meeting in an edge
-std::vector<std::string> faults(const Shape& shape, bool crossings = true);
+/// It can take minutes, or not end at all; see Checker.
+std::vector<std::string> faults(const Shape& shape, FaultKinds kinds = {});
 
-/// Writes STEP AP242 in millimetres, with the curves on the surfaces. The same shape gives the same bytes:
-/// the header carries a fixed date. Throws Error(Input, "write") where the file cannot be written whole.
+/// The shape as STEP AP242 in millimetres, with the curves on the surfaces. The same shape gives the same
+/// text: the header carries a fixed date.
+std::string stepText(const Shape& shape);
+
+/// Writes stepText(). Throws Error(Input, "write") where the file cannot be written whole.
 void writeStep(const Shape& shape, const std::string& path);
 
 /// Writes OpenCASCADE's .brep. Throws Error(Input, "write") where the file cannot be written whole.

@@ -1,13 +1,15 @@
 #include "trimquad/brep/face_checks.h"
 
+#include <BRepBndLib.hxx>
 #include <BRep_Builder.hxx>
+#include <Bnd_Box.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
-#include <optional>
-#include <set>
+#include <algorithm>
 
 #include "trimquad/base/byte_key.h"
 #include "trimquad/base/parallel.h"
-#include "trimquad/brep/assemble.h"
 #include "trimquad/brep/occt_guard.h"
 
 namespace trimquad {
@@ -17,6 +19,12 @@ namespace {
 /// cross beside it: around singularities, and where the region has a crease. Sine of 20 degrees.
 constexpr double kBent = 0.342;
 constexpr int kPlacesOfBorder = 64;
+
+/// Processor time for a check of faces, seconds; a hundred times of what usual ones take.
+constexpr int kSeconds = 10;
+constexpr int kPolesPerSecond = 200;
+
+const std::vector<std::string> kEndless{"the check does not end"};
 
 struct EdgeUse {
   int face;
@@ -40,9 +48,10 @@ bool isBent(const SplineModel& model, const EdgeUse& a, const EdgeUse& b) {
   return false;
 }
 
-/// The pairs of faces that share an edge and may cross beside it: one of them has folds, or they turn against
-/// each other; ascending.
-std::set<std::pair<int, int>> neighboursToCheck(const SplineModel& model, const std::vector<int>& folded) {
+/// The pairs of faces that share an edge and are the likeliest to cross beside it: one of them has folds, or
+/// they turn against each other; ascending.
+std::set<std::pair<int, int>> neighboursToCheckFirst(const SplineModel& model,
+                                                     const std::vector<int>& folded) {
   std::vector<std::vector<EdgeUse>> users(model.edges.size());
   for (int f = 0; f < int(model.faces.size()); ++f)
     for (const auto& loop : model.faces[f].loops)
@@ -67,92 +76,158 @@ Shape compound(const std::vector<Shape>& faces) {
   return Shape(result);
 }
 
-/// Faces with their edges and vertices as bytes: the same for faces that are the same.
-class Description {
- public:
-  explicit Description(const SplineModel& model) : model_(model) {}
+/// The model's faces as they are in its STEP file, whose numbers are rounded: whether OpenCASCADE's
+/// intersections end can hang on that. In the model's order.
+std::vector<Shape> facesOfFile(const SplineModel& model) {
+  return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no STEP file", [&] {
+    const Shape read = shapeFromStep(stepText(assemble(model)), "STEP");
+    TopTools_IndexedMapOfShape counted;
+    TopExp::MapShapes(read.topology(), TopAbs_FACE, counted);
+    const auto order = faceOrder(model);
+    if (counted.Extent() != int(order.size())) return assembledFaces(model);  // faultsOfWhole() tells
+    std::vector<std::optional<Shape>> placed(order.size());
+    for (int k = 0; k < int(order.size()); ++k) placed[order[k]].emplace(counted(k + 1));
+    std::vector<Shape> result;
+    for (auto& face : placed) result.push_back(std::move(*face));
+    return result;
+  });
+}
 
-  void add(const SplineFace& face) {
+/// The pairs of faces whose boxes overlap, ascending.
+std::vector<std::pair<int, int>> closePairs(const std::vector<Shape>& faces) {
+  std::vector<Bnd_Box> boxes(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f) BRepBndLib::Add(faces[f].topology(), boxes[f]);
+  std::vector<std::pair<int, int>> result;
+  for (int a = 0; a < int(faces.size()); ++a)
+    for (int b = a + 1; b < int(faces.size()); ++b)
+      if (!boxes[a].IsOut(boxes[b])) result.push_back({a, b});
+  return result;
+}
+
+int secondsFor(int poles) {
+  return kSeconds + poles / kPolesPerSecond;
+}
+
+/// Numbers of faces with their edges and vertices: the same for such as are the same, bit by bit.
+class Numbers {
+ public:
+  Numbers(const SplineModel& model, std::map<std::string, int>& known) : model_(model), known_(known) {}
+
+  int of(const SplineFace& face) {
     const auto& s = face.surface;
-    for (const int n : {s.degreeU, s.degreeV, s.countU, s.countV}) key_.add(n);
-    key_.add(s.knotsU).add(s.knotsV).add(s.poles).add(face.loops.size());
+    ByteKey key;
+    key.add('f');
+    for (const int n : {s.degreeU, s.degreeV, s.countU, s.countV}) key.add(n);
+    key.add(s.knotsU).add(s.knotsV).add(s.poles).add(face.loops.size());
     for (const auto& loop : face.loops) {
-      key_.add(loop.size());
-      for (const auto& coedge : loop) {
-        add(coedge.edge);
-        key_.add(coedge.forward);
-        add(coedge.curve);
-      }
+      key.add(loop.size());
+      for (const auto& coedge : loop) add(key.add(of(coedge.edge)).add(coedge.forward), coedge.curve);
     }
+    return number(key);
   }
-  std::string bytes() && { return std::move(key_).bytes(); }
 
  private:
-  template <int Dim>
-  void add(const SplineCurve<Dim>& curve) {
-    key_.add(curve.degree).add(curve.knots).add(curve.poles);
-  }
-  void add(SplineVertexId id) {
-    const auto [place, isNew] = vertices_.try_emplace(id, int(vertices_.size()));
-    key_.add(place->second);
-    if (!isNew) return;
-    const auto& vertex = model_.vertices[id.index];
-    key_.add(vertex.point).add(vertex.tolerance);
-  }
-  void add(SplineEdgeId id) {
-    const auto [place, isNew] = edges_.try_emplace(id, int(edges_.size()));
-    key_.add(place->second);
-    if (!isNew) return;
+  int of(SplineEdgeId id) {
+    const auto [place, isNew] = edges_.try_emplace(id, 0);
+    if (!isNew) return place->second;
     const auto& edge = model_.edges[id.index];
-    add(edge.curve);
-    add(edge.start);
-    add(edge.end);
-    key_.add(edge.tolerance);
+    ByteKey key;
+    key.add('e');
+    add(key, edge.curve);
+    key.add(of(edge.start)).add(of(edge.end)).add(edge.tolerance);
+    return edges_[id] = number(key);
   }
+  int of(SplineVertexId id) {
+    const auto& vertex = model_.vertices[id.index];
+    ByteKey key;
+    key.add('v').add(vertex.point).add(vertex.tolerance);
+    return number(key);
+  }
+  template <int Dim>
+  static void add(ByteKey& key, const SplineCurve<Dim>& curve) {
+    key.add(curve.degree).add(curve.knots).add(curve.poles);
+  }
+  int number(const ByteKey& key) { return known_.try_emplace(key.bytes(), int(known_.size())).first->second; }
 
   const SplineModel& model_;
-  std::map<SplineVertexId, int> vertices_;
+  std::map<std::string, int>& known_;
   std::map<SplineEdgeId, int> edges_;
-  ByteKey key_;
 };
 
 }  // namespace
 
+FaceChecks::FaceChecks(std::string checker) : checker_(std::move(checker)) {}
+
 std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& model,
-                                                         const std::vector<int>& folded, int threads) {
-  const auto faces = assembledFaces(model);
-  std::map<std::string, std::vector<std::string>> checked;
+                                                         const std::vector<int>& folded, int threads,
+                                                         const Progress& progress) {
+  const auto faces = assembledFaces(model), inFile = facesOfFile(model);
+  Numbers numbers(model, numbers_);
+  std::vector<int> number;
+  for (const auto& face : model.faces) number.push_back(numbers.of(face));
+
+  std::vector<std::vector<std::string>> result(faces.size());
+  /// Checks of faces alone, or of pairs for crossings.
   const auto check = [&](const std::vector<std::vector<int>>& groups) {
-    std::vector<std::string> keys;
+    std::vector<std::vector<int>> keys;
+    std::vector<int> unknown;
     for (const auto& group : groups) {
-      Description description(model);
-      for (const int f : group) description.add(model.faces[f]);
-      keys.push_back(std::move(description).bytes());
+      keys.emplace_back();
+      for (const int f : group) keys.back().push_back(number[f]);
+      if (!known_.contains(keys.back())) unknown.push_back(int(keys.size()) - 1);
     }
-    std::vector<std::vector<std::string>> found(groups.size());
-    parallelEach(int(groups.size()), threads, [&](int k) {
-      if (const auto before = known_.find(keys[k]); before != known_.end()) {
-        found[k] = before->second;
-        return;
-      }
+    std::vector<std::vector<std::string>> found(unknown.size());
+    parallelEach(int(unknown.size()), threads, [&](int k) {
+      progress.check();
+      const auto& group = groups[unknown[k]];
       std::vector<Shape> members;
-      for (const int f : groups[k]) members.push_back(faces[f]);
-      found[k] = trimquad::faults(members.size() == 1 ? members[0] : compound(members));
+      int poles = 0;
+      for (const int f : group) {
+        members.push_back(group.size() == 1 ? faces[f] : inFile[f]);
+        poles += int(model.faces[f].surface.poles.size());
+      }
+      const auto answer = checker_.faults(members.size() == 1 ? members[0] : compound(members),
+                                          {group.size() == 1, true}, secondsFor(poles), progress);
+      found[k] = answer ? *answer : kEndless;
+      progress.report((k + 1.0) / double(unknown.size()));
     });
-    for (std::size_t k = 0; k < groups.size(); ++k) checked.emplace(std::move(keys[k]), found[k]);
-    return found;
+    for (std::size_t k = 0; k < unknown.size(); ++k) known_[keys[unknown[k]]] = found[k];
+    for (std::size_t k = 0; k < groups.size(); ++k)
+      for (const int f : groups[k]) {
+        const auto& faults = known_[keys[k]];
+        result[f].insert(result[f].end(), faults.begin(), faults.end());
+      }
   };
-  std::vector<std::vector<int>> single, pairs;
+  const auto isClean = [&](int f) { return result[f].empty(); };
+  const auto checkPairs = [&](const auto& pairs) {
+    std::vector<std::vector<int>> groups;
+    for (const auto& [a, b] : pairs)
+      if (isClean(a) && isClean(b)) groups.push_back({a, b});
+    check(groups);
+  };
+  std::vector<std::vector<int>> single;
   for (int f = 0; f < int(faces.size()); ++f) single.push_back({f});
-  auto result = check(single);
-  for (const auto& [a, b] : neighboursToCheck(model, folded))
-    if (result[a].empty() && result[b].empty()) pairs.push_back({a, b});
-  const auto together = check(pairs);
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    for (const int face : pairs[k])
-      result[face].insert(result[face].end(), together[k].begin(), together[k].end());
-  known_ = std::move(checked);
+  check(single);
+  checkPairs(neighboursToCheckFirst(model, folded));
+  if (std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
+    checkPairs(closePairs(inFile));
   return result;
+}
+
+std::vector<std::string> FaceChecks::faultsOfWhole(const SplineModel& model, const Progress& progress) const {
+  const Shape shape = assemble(model), read = shapeFromStep(stepText(shape), "STEP");
+  int poles = 0;
+  for (const auto& face : model.faces) poles += int(face.surface.poles.size());
+  std::vector<std::string> found;
+  for (const Shape* whole : {&shape, &read}) {
+    const auto answer = checker_.faults(*whole, {true, false}, secondsFor(poles), progress);
+    found = answer ? *answer : kEndless;
+    if (!found.empty()) return found;
+  }
+  if (read.faceCount() != shape.faceCount())
+    found.push_back("its STEP file has " + std::to_string(read.faceCount()) + " faces instead of " +
+                    std::to_string(shape.faceCount()));
+  return found;
 }
 
 }  // namespace trimquad

@@ -4,23 +4,37 @@
 #include <string>
 #include <vector>
 
+#include "trimquad/brep/checker.h"
 #include "trimquad/spline/spline_model.h"
 
 namespace trimquad {
 
-/// Checks the faces of a model that is trimmed again and again: such as have not changed since the last time
-/// are not checked again.
+/// Checks a model that is trimmed again and again as OpenCASCADE does, face by face and pair by pair: such as
+/// have not changed since an earlier time are not checked again. What is checked is what the model's STEP
+/// file holds.
 class FaceChecks {
  public:
-  /// What is wrong with each face of the model alone (see faults()), in the model's order. Also of two that
-  /// share an edge together, which counts for both: where one of them is among `folded`, indices of faces
-  /// that have folds, or both are of one region and bent against each other somewhere along the edge. On up
-  /// to `threads` threads. Throws Error(Stage, "write") as assemble() does.
+  /// \param checker the file of the program `trimquad_checker`
+  explicit FaceChecks(std::string checker);
+
+  /// What is wrong with each face of the model (see trimquad::faults()), in the model's order: alone, and
+  /// with others, which counts for both. Of the faces that share an edge, those are checked together first
+  /// where one is among `folded`, indices of faces that have folds, or both are of one region and bent
+  /// against each other somewhere along the edge; where nothing is at fault so far, all whose boxes overlap.
+  /// A check that crashes or does not end within a limit, which usual ones stay a hundred times below, is a
+  /// fault. On up to `threads` threads. Throws Error(Stage, "write") as assemble() does, Error(Input,
+  /// "setup") where the program cannot be run, Error(Cancelled).
   std::vector<std::vector<std::string>> faults(const SplineModel& model, const std::vector<int>& folded,
-                                               int threads);
+                                               int threads, const Progress& progress);
+
+  /// What is wrong with the model as a whole, itself or as its STEP file holds it, but for faces that cross
+  /// others.
+  std::vector<std::string> faultsOfWhole(const SplineModel& model, const Progress& progress) const;
 
  private:
-  std::map<std::string, std::vector<std::string>> known_;  ///< by all that makes up the faces
+  Checker checker_;
+  std::map<std::string, int> numbers_;  ///< of all that makes up a face, an edge or a vertex
+  std::map<std::vector<int>, std::vector<std::string>> known_;  ///< by numbers of one face or two
 };
 
 }  // namespace trimquad

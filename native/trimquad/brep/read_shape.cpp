@@ -97,21 +97,12 @@ TopoDS_Shape readBRep(const std::string& content, const std::string& path) {
   return shape;
 }
 
-}  // namespace
-
-Shape readShape(const std::string& path) {
-  const std::string content = wholeFile(path);
-  if (content.empty()) throw inputError("read", "the file is empty", path);
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  const std::string complaint = "the file cannot be read: " + path;
-  const TopoDS_Shape shape = guarded(Error::Kind::Input, "read", complaint, [&] {
+/// What `read` gives, as a shape with faces.
+template <class Read>
+Shape faces(const std::string& path, Read&& read) {
+  const TopoDS_Shape shape = guarded(Error::Kind::Input, "read", "the file cannot be read: " + path, [&] {
     QuietTranslators quiet;
-    if (extension == ".step" || extension == ".stp") return readStep(content, path);
-    if (extension == ".iges" || extension == ".igs") return readIges(content, path);
-    if (extension == ".brep" || extension == ".brp") return readBRep(content, path);
-    throw inputError("read", "unknown file type; use STEP, IGES or BREP", path);
+    return read();
   });
   if (shape.IsNull()) throw inputError("read", "the file holds no shape that can be read", path);
   try {
@@ -119,6 +110,26 @@ Shape readShape(const std::string& path) {
   } catch (const Error& error) {
     throw inputError("read", error.message(), path);
   }
+}
+
+}  // namespace
+
+Shape shapeFromStep(const std::string& text, const std::string& name) {
+  return faces(name, [&] { return readStep(text, name); });
+}
+
+Shape readShape(const std::string& path) {
+  const std::string content = wholeFile(path);
+  if (content.empty()) throw inputError("read", "the file is empty", path);
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return faces(path, [&] {
+    if (extension == ".step" || extension == ".stp") return readStep(content, path);
+    if (extension == ".iges" || extension == ".igs") return readIges(content, path);
+    if (extension == ".brep" || extension == ".brp") return readBRep(content, path);
+    throw inputError("read", "unknown file type; use STEP, IGES or BREP", path);
+  });
 }
 
 }  // namespace trimquad

@@ -39,6 +39,9 @@ class Shape {
 /// malformed or holds no face.
 Shape readShape(const std::string& path);
 
+/// The shape in the text of a STEP file. Throws Error(Input, "read") as readShape() does, with `name` as place.
+Shape shapeFromStep(const std::string& text, const std::string& name);
+
 /// The shape in the bytes that FreeCAD's `Part.Shape.exportBinary` writes; exact. Throws Error(Input,
 /// "read").
 Shape shapeFromFreeCAD(const std::string& bytes);

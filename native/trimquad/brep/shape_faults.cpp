@@ -6,6 +6,7 @@
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <algorithm>
+#include <optional>
 
 #include "trimquad/brep/assemble.h"
 #include "trimquad/brep/occt_guard.h"
@@ -139,18 +140,19 @@ void appendStatus(const BRepCheck_ListOfStatus& statuses, const std::string& whe
 
 }  // namespace
 
-std::vector<std::string> faults(const Shape& shape, bool crossings) {
+std::vector<std::string> faults(const Shape& shape, FaultKinds kinds) {
   return guarded(Error::Kind::Stage, "write", "the shape cannot be checked", [&] {
     std::vector<std::string> found;
     // The analysers may change tolerances of what they check.
     const TopoDS_Shape copy = BRepBuilderAPI_Copy(shape.topology()).Shape();
     const Names names(copy);
-    const BRepCheck_Analyzer check(copy);
-    if (!check.IsValid()) {
+    std::optional<BRepCheck_Analyzer> check;
+    if (kinds.elements) check.emplace(copy);
+    if (check && !check->IsValid()) {
       for (int type = TopAbs_COMPOUND; type < TopAbs_SHAPE; ++type)
         for (int i = 1; i <= names.of(TopAbs_ShapeEnum(type)).Extent(); ++i) {
           const TopoDS_Shape& part = names.of(TopAbs_ShapeEnum(type))(i);
-          const Handle(BRepCheck_Result) result = check.Result(part);
+          const Handle(BRepCheck_Result) result = check->Result(part);
           if (result.IsNull()) continue;
           appendStatus(result->Status(), names(part), found);
           for (result->InitContextIterator(); result->MoreShapeInContext(); result->NextShapeInContext())
@@ -163,12 +165,12 @@ std::vector<std::string> faults(const Shape& shape, bool crossings) {
     if (found.empty()) {
       BOPAlgo_ArgumentAnalyzer analyzer;
       analyzer.SetShape1(copy);
-      analyzer.ArgumentTypeMode() = true;
-      analyzer.SelfInterMode() = crossings;
-      analyzer.SmallEdgeMode() = true;
-      analyzer.RebuildFaceMode() = true;
-      analyzer.ContinuityMode() = true;
-      analyzer.CurveOnSurfaceMode() = true;
+      analyzer.ArgumentTypeMode() = kinds.elements;
+      analyzer.SelfInterMode() = kinds.crossings;
+      analyzer.SmallEdgeMode() = kinds.elements;
+      analyzer.RebuildFaceMode() = kinds.elements;
+      analyzer.ContinuityMode() = kinds.elements;
+      analyzer.CurveOnSurfaceMode() = kinds.elements;
       analyzer.Perform();
       for (const auto& result : analyzer.GetCheckResult()) {
         std::string where;

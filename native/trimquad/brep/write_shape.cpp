@@ -20,14 +20,18 @@
 namespace trimquad {
 namespace {
 
-/// Writes what `print` prints and makes sure that every byte has arrived. OpenCASCADE prints to memory: on a
-/// full disk its own streams end in a bad cast.
-void writeFile(const std::string& path, const std::function<bool(std::ostream&)>& print) {
+/// What `print` prints. OpenCASCADE prints to memory: on a full disk its own streams end in a bad cast.
+std::string printed(const std::function<bool(std::ostream&)>& print) {
   std::ostringstream text;
-  if (!print(text)) throw stageError("write", "OpenCASCADE could not print the shape", path);
+  if (!print(text)) throw stageError("write", "OpenCASCADE could not print the shape");
+  return std::move(text).str();
+}
+
+/// Writes the text and makes sure that every byte has arrived.
+void writeFile(const std::string& path, const std::string& text) {
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (file) file << text.view();
+  if (file) file << text;
   file.close();
   if (!file)
     throw inputError("write",
@@ -66,8 +70,8 @@ class TranslatorSetting {
 
 }  // namespace
 
-void writeStep(const Shape& shape, const std::string& path) {
-  guarded(Error::Kind::Stage, "write", "the shape cannot be translated to STEP", [&] {
+std::string stepText(const Shape& shape) {
+  return guarded(Error::Kind::Stage, "write", "the shape cannot be translated to STEP", [&] {
     const QuietTranslators quiet;
     STEPControl_Controller::Init();
     const TranslatorSetting schema("write.step.schema", "AP242DIS"), unit("write.step.unit", "MM"),
@@ -82,21 +86,26 @@ void writeStep(const Shape& shape, const std::string& path) {
     header.SetTimeStamp(new TCollection_HAsciiString("2000-01-01T00:00:00"));
     header.SetOriginatingSystem(new TCollection_HAsciiString("TrimQuad"));
     header.Apply(model);
-    writeFile(path, [&](std::ostream& file) {
+    return printed([&](std::ostream& stream) {
       StepData_StepWriter text(model);
       text.SendModel(Handle(StepData_Protocol)::DownCast(model->Protocol()));
-      return text.Print(file);
+      return text.Print(stream);
     });
   });
 }
 
+void writeStep(const Shape& shape, const std::string& path) {
+  writeFile(path, stepText(shape));
+}
+
 void writeBrep(const Shape& shape, const std::string& path) {
-  guarded(Error::Kind::Stage, "write", "the shape cannot be written", [&] {
-    writeFile(path, [&](std::ostream& file) {
-      BRepTools::Write(shape.topology(), file);
-      return file.good();
+  const std::string text = guarded(Error::Kind::Stage, "write", "the shape cannot be written", [&] {
+    return printed([&](std::ostream& stream) {
+      BRepTools::Write(shape.topology(), stream);
+      return stream.good();
     });
   });
+  writeFile(path, text);
 }
 
 }  // namespace trimquad

@@ -10,6 +10,12 @@ namespace {
 
 using namespace test;
 
+Progress progress;
+
+FaceChecks checksOf() {
+  return FaceChecks(TRIMQUAD_CHECKER);
+}
+
 using Faults = std::vector<std::vector<std::string>>;
 
 /// A box of which two faces are left, one with a spike, away from its edges, through the middle of the other.
@@ -26,40 +32,40 @@ SplineModel spikedFaces() {
   return model;
 }
 
-TEST(FaceChecks, neighboursThatCrossAreFoundWhereOneOfThemHasFolds) {
-  const auto model = spikedFaces();
+TEST(FaceChecks, facesThatCrossAreFoundWhereverTheyAre) {
+  auto model = spikedFaces();
   const std::vector<std::string> none;
-  for (const auto& faults : FaceChecks().faults(model, {}, 1))
-    EXPECT_EQ(faults, none) << "each alone has none";
-  for (const int folded : {0, 1})
-    for (const auto& faults : FaceChecks().faults(model, {folded}, 2)) EXPECT_NE(faults, none);
+  ASSERT_NE(model.faces[0].region, model.faces[1].region);
+  for (const auto& folded : {std::vector<int>{}, {0}, {1}})
+    for (const auto& faults : checksOf().faults(model, folded, 2, progress)) EXPECT_NE(faults, none);
+  // Also such as are bent against each other, which are looked at before the others.
+  model.faces[1].region = model.faces[0].region;
+  for (const auto& faults : checksOf().faults(model, {}, 1, progress)) EXPECT_NE(faults, none);
 }
 
-TEST(FaceChecks, neighboursOfOneRegionThatCrossAreFoundWhereTheyAreBentAgainstEachOther) {
-  auto model = spikedFaces();
-  ASSERT_NE(model.faces[0].region, model.faces[1].region);
-  const std::vector<std::string> none;
-  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_EQ(faults, none);
-  model.faces[1].region = model.faces[0].region;
-  for (const auto& faults : FaceChecks().faults(model, {}, 1)) EXPECT_NE(faults, none);
+TEST(FaceChecks, theFileOfTheModelIsCheckedAsAWhole) {
+  auto model = bulgedBox(0.8).trim();
+  EXPECT_EQ(checksOf().faultsOfWhole(model, progress), std::vector<std::string>{});
+  for (auto& pole : model.edges[0].curve.poles) pole[2] += 1e-2;
+  EXPECT_NE(checksOf().faultsOfWhole(model, progress), std::vector<std::string>{});
 }
 
 TEST(FaceChecks, findAgainWhatIsStillThereAndWhatIsNew) {
   auto model = bulgedBox(0.8).trim();
-  FaceChecks checks;
+  auto checks = checksOf();
   const Faults none(model.faces.size());
-  EXPECT_EQ(checks.faults(model, {}, 2), none);
+  EXPECT_EQ(checks.faults(model, {}, 2, progress), none);
   auto bent = model;
   for (auto& pole : bent.edges[0].curve.poles) pole[2] += 1e-2;
-  const Faults found = checks.faults(bent, {}, 2);
+  const Faults found = checks.faults(bent, {}, 2, progress);
   EXPECT_NE(found, none);
-  EXPECT_EQ(checks.faults(bent, {}, 1), found);
-  EXPECT_EQ(FaceChecks().faults(bent, {}, 1), found);
-  EXPECT_EQ(checks.faults(model, {}, 1), none);
+  EXPECT_EQ(checks.faults(bent, {}, 1, progress), found);
+  EXPECT_EQ(checksOf().faults(bent, {}, 1, progress), found);
+  EXPECT_EQ(checks.faults(model, {}, 1, progress), none);
   // The vertices count as well.
   auto loose = model;
   loose.vertices[0].point[0] += 1e-2;
-  EXPECT_NE(checks.faults(loose, {}, 1), none);
+  EXPECT_NE(checks.faults(loose, {}, 1, progress), none);
 }
 
 }  // namespace
