@@ -48,6 +48,7 @@ class Result:
         self.warnings = []
         self.shape_counts = {}
         self.seconds = {}
+        self.work_of_checks = 0  # of faces, in steps as long as those of fits
         self.work_of_replaced = 0  # of the fits of regions that were replaced by their parts
         self.may_be_divided = False  # a mesh, along its sharp edges, if there are no surfaces of a region over its own map
         self.work_in_vain = 0  # of the fits of another Result, which this one replaces or which did not replace this one
@@ -63,8 +64,8 @@ class Result:
 
     @property
     def work(self):
-        """Of all fits, in steps (see RegionResult.work)."""
-        return self.work_of_replaced + sum(r.work for r in self.regions)
+        """Of all fits and checks, in steps (see RegionResult.work)."""
+        return self.work_of_checks + self.work_of_replaced + sum(r.work for r in self.regions)
 
     @property
     def failed(self):

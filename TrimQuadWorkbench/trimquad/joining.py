@@ -97,6 +97,7 @@ def _refit_faulty(result, checks, progress):
     folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
     with progress.stage("check") as native_progress:
         found = checks.faults(result.spline, folded_faces, result.options.threads, native_progress)
+        result.work_of_checks += native_progress.work
     for face, faults in zip(faces, found):
         if faults:
             faulty.setdefault(face["region"], []).append((face["chart"], faults[0]))
@@ -169,7 +170,7 @@ def _refit(item, charts, error, result, progress):
         if item.refits > len(REFITS):
             raise error
         way = dict(REFITS[item.refits - 1])
-        if "smoother" not in way and regions.exhausted(item, result, progress):
+        if result.exhausted or ("smoother" not in way and regions.exhausted(item, result, progress)):
             raise error
         if "smoother" in way:
             if way["smoother"]:

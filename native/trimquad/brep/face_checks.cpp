@@ -20,9 +20,12 @@ namespace {
 constexpr double kBent = 0.342;
 constexpr int kPlacesOfBorder = 64;
 
-/// Processor time for a check of faces, seconds; a hundred times of what usual ones take.
-constexpr int kSeconds = 10;
-constexpr int kPolesPerSecond = 200;
+/// Processor time for a check of a face, and of two for crossings, seconds; thirty times of what usual ones
+/// take, and more.
+constexpr int kSeconds = 10, kSecondsOfTwo = 5;
+constexpr int kPolesPerSecond = 200, kPolesOfTwoPerSecond = 1000;
+/// Work of checks, in steps that take as long as those of fits.
+constexpr long kWorkPerPole = 200, kWorkPerSecond = 2000000;
 
 const std::vector<std::string> kEndless{"the check does not end"};
 
@@ -107,6 +110,9 @@ std::vector<std::pair<int, int>> closePairs(const std::vector<Shape>& faces) {
 int secondsFor(int poles) {
   return kSeconds + poles / kPolesPerSecond;
 }
+int secondsForTwo(int poles) {
+  return kSecondsOfTwo + poles / kPolesOfTwoPerSecond;
+}
 
 /// Numbers of faces with their edges and vertices: the same for such as are the same, bit by bit.
 class Numbers {
@@ -186,9 +192,11 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
         members.push_back(group.size() == 1 ? faces[f] : inFile[f]);
         poles += int(model.faces[f].surface.poles.size());
       }
+      const int seconds = group.size() == 1 ? secondsFor(poles) : secondsForTwo(poles);
       const auto answer = checker_.faults(members.size() == 1 ? members[0] : compound(members),
-                                          {group.size() == 1, true}, secondsFor(poles), progress);
+                                          {group.size() == 1, true}, seconds, progress);
       found[k] = answer ? *answer : kEndless;
+      progress.addWork(answer ? kWorkPerPole * poles : kWorkPerSecond * seconds);
       progress.report((k + 1.0) / double(unknown.size()));
     });
     for (std::size_t k = 0; k < unknown.size(); ++k) known_[keys[unknown[k]]] = found[k];
