@@ -1,5 +1,6 @@
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
 #include <Interface_Static.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
@@ -8,10 +9,14 @@
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <iomanip>
 #include <sstream>
 
 #include "trimquad/brep/assemble.h"
@@ -54,10 +59,10 @@ void nameProducts(const Handle(StepData_StepModel) & model) {
 /// Sets one of the translator's global settings and puts the old value back.
 class TranslatorSetting {
  public:
-  TranslatorSetting(const char* name, const char* value) : name_(name) {
+  TranslatorSetting(const char* name, const std::string& value) : name_(name) {
     const char* before = Interface_Static::CVal(name);
     before_ = before ? before : "";
-    Interface_Static::SetCVal(name, value);
+    Interface_Static::SetCVal(name, value.c_str());
   }
   ~TranslatorSetting() { Interface_Static::SetCVal(name_, before_.c_str()); }
   TranslatorSetting(const TranslatorSetting&) = delete;
@@ -68,6 +73,23 @@ class TranslatorSetting {
   std::string before_;
 };
 
+std::string digits(double value) {
+  std::ostringstream text;
+  text << std::setprecision(17) << value;
+  return text.str();
+}
+
+/// The uncertainty to say in a file: readers make curves on surfaces anew that are further off than that, and
+/// worse ones. As much as the shape's edges need, at most a millionth of its size.
+double uncertainty(const Shape& shape) {
+  constexpr double least = 1e-7, most = 1e-6, more = 1.2;
+  double tolerance = 0;
+  for (TopExp_Explorer edges(shape.topology(), TopAbs_EDGE); edges.More(); edges.Next())
+    tolerance = std::max(tolerance, BRep_Tool::Tolerance(TopoDS::Edge(edges.Current())));
+  if (tolerance <= least) return least;
+  return std::max(least, std::min(more * tolerance, most * shape.diagonal()));
+}
+
 }  // namespace
 
 std::string stepText(const Shape& shape) {
@@ -75,7 +97,8 @@ std::string stepText(const Shape& shape) {
     const QuietTranslators quiet;
     STEPControl_Controller::Init();
     const TranslatorSetting schema("write.step.schema", "AP242DIS"), unit("write.step.unit", "MM"),
-        curves("write.surfacecurve.mode", "On");
+        curves("write.surfacecurve.mode", "On"), given("write.precision.mode", "2"),
+        precision("write.precision.val", digits(uncertainty(shape)));
     STEPControl_Writer writer;
     if (writer.Transfer(shape.topology(), STEPControl_AsIs) != IFSelect_RetDone)
       throw stageError("write", "OpenCASCADE could not translate the shape to STEP; try .brep instead");

@@ -191,6 +191,24 @@ TEST(WriteStep, sameShapeSameBytes) {
   EXPECT_NE(first.text().find("AP242"), std::string::npos);
 }
 
+TEST(WriteStep, edgesOffTheirSurfacesAreReadAsTheyWereWritten) {
+  auto model = bulgedBox(0.8).trim();
+  constexpr double gap = 5e-7;
+  auto& edge = model.edges[0];
+  for (auto& pole : edge.curve.poles) pole[2] += gap;
+  edge.curve.poles.front()[2] += gap / 4;  // where readers look
+  for (double* tolerance : {&edge.tolerance, &model.vertices[edge.start.index].tolerance,
+                            &model.vertices[edge.end.index].tolerance})
+    *tolerance = 1.3 * gap;
+  const Shape shape = assemble(model);
+  ASSERT_EQ(faults(shape), std::vector<std::string>{});
+  std::string text = stepText(shape);
+  EXPECT_EQ(faults(shapeFromStep(text, "box")), std::vector<std::string>{});
+  text.erase(std::remove(text.begin(), text.end(), '\n'), text.end());
+  const std::string before = "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(";
+  EXPECT_GE(std::stod(text.substr(text.find(before) + before.size())), edge.tolerance);
+}
+
 TEST(WriteStep, unwritablePlacesAreInputErrors) {
   const Shape shape = assemble(rectangleSheet().trim());
   for (const auto write : {&writeStep, &writeBrep}) {
