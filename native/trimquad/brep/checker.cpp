@@ -104,7 +104,10 @@ class Checker::Process {
     for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGPROF}) sigaddset(&usual, number);
     posix_spawnattr_setsigdefault(&attributes, &usual);
     posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    // A group of its own: an interrupt from the terminal is for this process, which ends the other one.
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes,
+                             POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
     std::string name = program;
     char* arguments[] = {name.data(), nullptr};
     const int failed = posix_spawn(&id_, program.c_str(), &actions, &attributes, arguments, environ);
