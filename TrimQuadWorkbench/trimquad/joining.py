@@ -241,7 +241,8 @@ def _fit_closer(item, result, progress):
 
 
 def check(result, progress):
-    """OpenCASCADE's check of the whole model, also as its STEP file holds it. Faces that cross others were looked for by trim()."""
+    """OpenCASCADE's check of the whole model, also as its STEP file holds it, but for faces that cross others: trim() looked
+    for these."""
     if result.native_shape is None:
         return
     started = time.monotonic()

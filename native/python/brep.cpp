@@ -84,9 +84,10 @@ void bindBrep(py::module_& m) {
   m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
-  py::class_<FaceChecks>(m, "FaceChecks",
-                         "OpenCASCADE's checks of a model's STEP file, which are not repeated for faces and "
-                         "pairs of faces that stay the same.")
+  py::class_<FaceChecks>(
+      m, "FaceChecks",
+      "OpenCASCADE's checks of a model's faces, and of pairs of them as its STEP file holds "
+      "them, which are not repeated while these stay the same.")
       .def(py::init<std::string>(), py::arg("checker"))
       .def("faults", &FaceChecks::faults, py::arg("spline"), py::arg("folded"), py::arg("threads"),
            py::arg("progress"), Released(),
@@ -101,12 +102,6 @@ void bindBrep(py::module_& m) {
         py::arg("chord"), py::arg("size"), py::arg("threads"), py::arg("progress"),
         "By face of the spline: points (n, 3), distances from its region (n), triangles (m, 3). `chord` and "
         "`size` bound the triangles' distances from the face and their sides.");
-  m.def(
-      "shape_faults",
-      [](const Shape& shape, bool crossings) {
-        return faults(shape, {.elements = true, .crossings = crossings});
-      },
-      py::arg("shape"), py::arg("crossings"), Released());
   m.def("write_step", &writeStep, py::arg("shape"), py::arg("path"), Released());
   m.def("write_brep", &writeBrep, py::arg("shape"), py::arg("path"), Released());
 }

@@ -7,6 +7,8 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "trimquad/base/byte_key.h"
 #include "trimquad/base/parallel.h"
@@ -110,9 +112,6 @@ std::vector<std::pair<int, int>> closePairs(const std::vector<Shape>& faces) {
 int secondsFor(int poles) {
   return kSeconds + poles / kPolesPerSecond;
 }
-int secondsForTwo(int poles) {
-  return kSecondsOfTwo + poles / kPolesOfTwoPerSecond;
-}
 
 /// Numbers of faces with their edges and vertices: the same for such as are the same, bit by bit.
 class Numbers {
@@ -167,7 +166,13 @@ FaceChecks::FaceChecks(std::string checker) : checker_(std::move(checker)) {}
 std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& model,
                                                          const std::vector<int>& folded, int threads,
                                                          const Progress& progress) {
-  const auto faces = assembledFaces(model), inFile = facesOfFile(model);
+  const auto faces = assembledFaces(model);
+  std::vector<Shape> inFile;
+  // Written and read where pairs are to be checked.
+  const auto facesInFile = [&]() -> const std::vector<Shape>& {
+    if (inFile.empty()) inFile = facesOfFile(model);
+    return inFile;
+  };
   Numbers numbers(model, numbers_);
   std::vector<int> number;
   for (const auto& face : model.faces) number.push_back(numbers.of(face));
@@ -182,19 +187,21 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
       for (const int f : group) keys.back().push_back(number[f]);
       if (!known_.contains(keys.back())) unknown.push_back(int(keys.size()) - 1);
     }
+    if (!unknown.empty() && groups[unknown.front()].size() > 1) facesInFile();
     std::vector<std::vector<std::string>> found(unknown.size());
     parallelEach(int(unknown.size()), threads, [&](int k) {
       progress.check();
       const auto& group = groups[unknown[k]];
+      const bool alone = group.size() == 1;
       std::vector<Shape> members;
       int poles = 0;
       for (const int f : group) {
-        members.push_back(group.size() == 1 ? faces[f] : inFile[f]);
+        members.push_back(alone ? faces[f] : inFile[f]);
         poles += int(model.faces[f].surface.poles.size());
       }
-      const int seconds = group.size() == 1 ? secondsFor(poles) : secondsForTwo(poles);
-      const auto answer = checker_.faults(members.size() == 1 ? members[0] : compound(members),
-                                          {group.size() == 1, true}, seconds, progress);
+      const int seconds = alone ? secondsFor(poles) : kSecondsOfTwo + poles / kPolesOfTwoPerSecond;
+      const auto answer =
+          checker_.faults(alone ? members[0] : compound(members), {alone, true}, seconds, progress);
       found[k] = answer ? *answer : kEndless;
       progress.addWork(answer ? kWorkPerPole * poles : kWorkPerSecond * seconds);
       progress.report((k + 1.0) / double(unknown.size()));
@@ -218,7 +225,7 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   check(single);
   checkPairs(neighboursToCheckFirst(model, folded));
   if (std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
-    checkPairs(closePairs(inFile));
+    checkPairs(closePairs(facesInFile()));
   return result;
 }
 

@@ -10,8 +10,8 @@
 namespace trimquad {
 
 /// Checks a model that is trimmed again and again as OpenCASCADE does, face by face and pair by pair: such as
-/// have not changed since an earlier time are not checked again. What is checked is what the model's STEP
-/// file holds.
+/// have not changed since an earlier time are not checked again. Pairs are checked as the model's STEP file
+/// holds them: its numbers are rounded, and whether OpenCASCADE's intersections end can hang on that.
 class FaceChecks {
  public:
   /// \param checker the file of the program `trimquad_checker`
@@ -21,9 +21,9 @@ class FaceChecks {
   /// with others, which counts for both. Of the faces that share an edge, those are checked together first
   /// where one is among `folded`, indices of faces that have folds, or both are of one region and bent
   /// against each other somewhere along the edge; where nothing is at fault so far, all whose boxes overlap.
-  /// A check that crashes or does not end within a limit, which usual ones stay a hundred times below, is a
-  /// fault. On up to `threads` threads. Throws Error(Stage, "write") as assemble() does, Error(Input,
-  /// "setup") where the program cannot be run, Error(Cancelled).
+  /// A check that crashes or does not end within a limit, which usual ones stay far below, is a fault. What
+  /// was done is added to the progress's work. On up to `threads` threads. Throws Error(Stage, "write") as
+  /// assemble() does, Error(Input, "setup") where the program cannot be run, Error(Cancelled).
   std::vector<std::vector<std::string>> faults(const SplineModel& model, const std::vector<int>& folded,
                                                int threads, const Progress& progress);
 

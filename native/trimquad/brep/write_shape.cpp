@@ -62,7 +62,7 @@ class TranslatorSetting {
   TranslatorSetting(const char* name, const std::string& value) : name_(name) {
     const char* before = Interface_Static::CVal(name);
     before_ = before ? before : "";
-    Interface_Static::SetCVal(name, value.c_str());
+    TRIMQUAD_ASSERT(Interface_Static::SetCVal(name, value.c_str()));
   }
   ~TranslatorSetting() { Interface_Static::SetCVal(name_, before_.c_str()); }
   TranslatorSetting(const TranslatorSetting&) = delete;

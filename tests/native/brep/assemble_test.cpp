@@ -16,6 +16,7 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Vertex.hxx>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <numbers>

@@ -8,7 +8,7 @@
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS_Compound.hxx>
-
+#include <chrono>
 #include <cmath>
 #include <thread>
 

@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-Progress progress;
+const Progress progress;
 
 FaceChecks checksOf() {
   return FaceChecks(TRIMQUAD_CHECKER);
