@@ -29,19 +29,35 @@ bool needsMoves(const SheetCorner& corner, const std::vector<Sheet>& sheets) {
   return std::abs(normals[0].cross(normals[1]).dot(normals[2])) < kFlat;
 }
 
+/// The bodies around a corner that move: single ones where there are any and no more than one other.
+std::set<int> movingBodies(const SheetCorner& corner, const SheetMover& mover) {
+  std::set<int> single, joined;
+  bool fixed = false;
+  for (const auto& use : corner.uses) {
+    const SheetBody& body = mover.ofSheet(use.sheet);
+    fixed |= !body.mayMove();
+    if (body.mayMove()) (body.isSingle() ? single : joined).insert(mover.bodyOf(use.sheet));
+  }
+  if (joined.size() + fixed > 1 || (single.empty() && joined.size() == 1)) single.merge(joined);
+  return single;
+}
+
 /// Where the sheets around a corner are to meet.
 Eigen::Vector3d meetingPoint(const SheetCorner& corner, const std::vector<Sheet>& sheets,
-                             const std::vector<char>& mayMove) {
+                             const std::set<int>& moving, const SheetMover& mover) {
   std::vector<const Sheet*> still;
   std::vector<Eigen::Vector2d> guess;
-  for (const auto& use : corner.uses)
-    if (!mayMove[use.sheet]) still.push_back(&sheets[use.sheet]), guess.push_back(use.at);
+  for (const auto& use : corner.uses) {
+    if (moving.count(mover.bodyOf(use.sheet))) continue;
+    if (use.endsBorder) return sheets[use.sheet].jet(use.at).s;
+    still.push_back(&sheets[use.sheet]), guess.push_back(use.at);
+  }
   return still.empty() ? corner.point : cornerPoint(corner.point, still, guess, HUGE_VAL).point;
 }
 
 void appendMoves(const Sheet& sheet, const SheetCorner::Use& use, const Eigen::Vector3d& target, double error,
                  bool withTangents, std::vector<SurfaceMove>& moves) {
-  const Eigen::Vector2d y = sheet.footPoint(target, use.at);
+  const Eigen::Vector2d y = use.placeFor(target, sheet);
   const auto jet = sheet.jet(y);
   const Eigen::Vector3d by = target - jet.s;
   moves.push_back({y, by, {1, 1}, 1, error});
@@ -57,28 +73,31 @@ void appendMoves(const Sheet& sheet, const SheetCorner::Use& use, const Eigen::V
 }  // namespace
 
 std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<SheetCorner>& corners,
-                               const std::vector<char>& mayMove, double error, const SheetMover& mover) {
+                               double error, const SheetMover& mover) {
   struct Meeting {
     const SheetCorner::Use* use;
     Eigen::Vector3d point;
   };
-  std::vector<std::vector<Meeting>> meetings(sheets.size());
+  std::vector<std::vector<Meeting>> meetings(mover.bodies().size());
   for (const auto& corner : corners) {
     if (!needsMoves(corner, sheets)) continue;
-    const Eigen::Vector3d point = meetingPoint(corner, sheets, mayMove);
+    const auto moving = movingBodies(corner, mover);
+    const Eigen::Vector3d point = meetingPoint(corner, sheets, moving, mover);
     for (const auto& use : corner.uses)
-      if (mayMove[use.sheet]) meetings[use.sheet].push_back({&use, point});
+      if (const int body = mover.bodyOf(use.sheet); moving.count(body))
+        meetings[body].push_back({&use, point});
   }
   std::vector<int> moved;
-  for (int k = 0; k < int(sheets.size()); ++k) {
-    if (meetings[k].empty()) continue;
-    const int poles = int(sheets[k].surface.poles.size());
+  for (int body = 0; body < int(meetings.size()); ++body) {
+    if (meetings[body].empty()) continue;
     for (const bool withTangents : {true, false}) {
-      std::vector<SurfaceMove> moves;
-      for (const auto& meeting : meetings[k])
-        appendMoves(sheets[k], *meeting.use, meeting.point, error, withTangents, moves);
-      if (!mover.move(sheets, k, moves, kFade, kMorePoles * poles + kFewPoles)) continue;
-      moved.push_back(k);
+      SheetMoves moves;
+      for (const auto& meeting : meetings[body])
+        appendMoves(sheets[meeting.use->sheet], *meeting.use, meeting.point, error, withTangents,
+                    moves[meeting.use->sheet]);
+      const int poles = mover.poles(sheets, body, moves);
+      if (!mover.move(sheets, body, moves, kFade, kMorePoles * poles + kFewPoles)) continue;
+      moved.push_back(body);
       break;
     }
   }

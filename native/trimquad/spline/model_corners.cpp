@@ -127,9 +127,11 @@ CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
           if (sheets[k] == own.sheet) corner.at[k] = own.at(lines.endOf(ends[0]));
         }
   }
-  for (std::size_t k = 0; k < members.size(); ++k)
-    if (!borders_[sheetRegion_[uses_[members[k]].sheet]])
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto first = points.lower_bound({sheetRegion_[uses_[members[k]].sheet], 0});
+    if (first == points.end() || first->first != sheetRegion_[uses_[members[k]].sheet])
       corner.at[k] = sheets[k]->footPoint(corner.point, corner.at[k]);
+  }
   return corner;
 }
 

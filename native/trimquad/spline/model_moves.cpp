@@ -38,11 +38,20 @@ long ModelTrimmer::numberOfRegion(int r) const {
   return memory_.numberOf("region", std::move(key));
 }
 
-/// By sheet: whether its surface may move. Those of one region are joined to each other.
-std::vector<char> ModelTrimmer::mayMove() const {
-  std::vector<char> single;
-  for (const int r : sheetRegion_) single.push_back(!borders_[r]);
-  return single;
+/// The sheets by region; those of several charts can move where what joins them is known.
+std::vector<SheetBody> ModelTrimmer::bodies() const {
+  std::vector<SheetBody> result;
+  for (int r = 0; r < int(fitted_.size()); ++r) {
+    if (!fitted_[r]) continue;
+    SheetBody body{firstSheet_[r], 1};
+    if (const FittedSurface& fit = *fitted_[r]; fit.layout) {
+      body.count = int(fit.surfaces.size());
+      body.layout = &*fit.layout;
+      if (fit.continuation) body.knots = &fit.continuation->knots;
+    }
+    result.push_back(body);
+  }
+  return result;
 }
 
 /// Of a region of one chart from a surface that may be its own; at samples that follow from the region and
@@ -73,29 +82,84 @@ ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bo
       .first;
 }
 
-/// Whether a sheet may become this surface.
-bool ModelTrimmer::acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) const {
-  const int r = sheetRegion_[sheet];
-  if (!(deviationOf(r, surface, false).max <=
-        std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation)))
-    return false;
-  return true;
+/// The same of one of a region's several charts.
+ChartDeviation ModelTrimmer::deviationOfChart(int r, int chart, const SplineSurface& surface) const {
+  const Region& region = model_.regions[r];
+  const FittedSurface& fit = *fitted_[r];
+  ByteKey key;
+  key.add(numberOfRegion(r));
+  for (const auto& s : fit.surfaces) key.add(memory_.numberOf(s));
+  using Known = std::shared_ptr<const TrueSurface>;
+  const auto samples = [&] {
+    using Samples = std::pair<std::shared_ptr<const std::vector<std::vector<SurfaceSample>>>, Known>;
+    return memory_
+        .recall<Samples>("samples",
+                         key,
+                         [&] {
+                           return Samples(std::make_shared<const std::vector<std::vector<SurfaceSample>>>(
+                                              samplesByChart(fit, region, *maps_[r], threads_, progress_)),
+                                          region.surface);
+                         })
+        .first;
+  };
+  ByteKey ofSurface = key;
+  ofSurface.add(chart).add(memory_.numberOf(surface));
+  using Measured = std::pair<ChartDeviation, Known>;
+  return memory_
+      .recall<Measured>("deviation", std::move(ofSurface),
+                        [&] {
+                          return Measured(deviationFrom(surface, (*samples())[chart], threads_, progress_),
+                                          region.surface);
+                        })
+      .first;
+}
+
+/// Whether sheets of a region may become these surfaces.
+bool ModelTrimmer::acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const {
+  const int r = sheetRegion_[surfaces.begin()->first];
+  const double most = std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation);
+  return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& ofSheet) {
+    const auto& [sheet, surface] = ofSheet;
+    const ChartDeviation deviation = borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface)
+                                                 : deviationOf(r, surface, false);
+    return deviation.max <= most;
+  });
 }
 
 SheetMover ModelTrimmer::mover() const {
-  const auto accepts = [&](int sheet, const SplineSurface& surface, bool lastResort) {
-    return acceptsMoved(sheet, surface, lastResort);
+  const auto accepts = [&](int, const std::map<int, SplineSurface>& surfaces, bool lastResort) {
+    return acceptsMoved(surfaces, lastResort);
   };
-  return SheetMover(memory_, accepts, progress_);
+  return SheetMover(bodies(), memory_, accepts, progress_);
 }
 
-std::map<int, ChartDeviation> ModelTrimmer::movedRegions() const {
-  std::map<int, ChartDeviation> result;
-  for (const int r : moved_) result[r] = deviationOf(r, sheets_[firstSheet_[r]].surface, true);
+std::map<int, std::vector<ChartDeviation>> ModelTrimmer::movedRegions() const {
+  std::map<int, std::vector<ChartDeviation>> result;
+  for (const int r : moved_) {
+    if (!borders_[r]) {
+      result[r] = {deviationOf(r, sheets_[firstSheet_[r]].surface, true)};
+      continue;
+    }
+    for (int c = 0; c < int(fitted_[r]->surfaces.size()); ++c)
+      result[r].push_back(deviationOfChart(r, c, sheets_[firstSheet_[r] + c].surface));
+  }
   return result;
 }
 
-/// Moves single surfaces so that all around a corner of the model meet there.
+/// Where on its chart's sheet a border of the run's region ends together with the run.
+std::optional<Eigen::Vector2d> ModelTrimmer::borderEnd(const BoundaryRun& run, const RunEnd& end) const {
+  const auto& lines = borders_[run.region];
+  if (!lines) return {};
+  const int point = layoutPoint({cornerOf(end), sheetOf(run), end.vertex, end.point, {}, {}, {}});
+  if (point < 0) return {};
+  for (const auto& e : lines->endsAt(point))
+    for (const int side : {0, 1})
+      if (const SheetLine line = lines->line(e.border, side); line.sheet == &sheets_[sheetOf(run)])
+        return line.at(lines->endOf(e));
+  return {};
+}
+
+/// Moves surfaces so that all around a corner of the model meet there.
 void ModelTrimmer::meetInCorners() {
   std::map<int, SheetCorner> corners;
   std::set<std::tuple<int, int, int>> known;  // corner, sheet, vertex
@@ -107,8 +171,9 @@ void ModelTrimmer::meetInCorners() {
       auto& corner = corners[id];
       corner.id = id;
       corner.point = model_.corners[id];
-      const Eigen::Vector2d at = atStart ? run.uv.front() : run.uv.back();
-      corner.uses.push_back({sheet, at, {}});
+      const auto border = borderEnd(run, end);
+      const Eigen::Vector2d at = border ? *border : atStart ? run.uv.front() : run.uv.back();
+      corner.uses.push_back({sheet, at, border.has_value(), {}});
       const auto& surface = model_.regions[run.region].surface;
       if (!surface) continue;
       const auto jet = sheets_[sheet].jet(at);
@@ -116,8 +181,9 @@ void ModelTrimmer::meetInCorners() {
     }
   std::vector<SheetCorner> all;
   for (auto& [id, corner] : corners) all.push_back(std::move(corner));
-  for (const int k : trimquad::meetInCorners(sheets_, all, mayMove(), kSmallestTolerance, mover()))
-    moved_.insert(sheetRegion_[k]);
+  const SheetMover moves = mover();
+  for (const int body : trimquad::meetInCorners(sheets_, all, kSmallestTolerance, moves))
+    moved_.insert(sheetRegion_[moves.bodies()[body].first]);
 }
 
 /// The corners in which curves end along which sheets touch, with all sheets around them.
@@ -136,7 +202,7 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
         if (corner == corners.end()) continue;
         corner->second.point =
             pointOfCorner(corner->first, atStart ? sampled.point.front() : sampled.point.back());
-        corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back()});
+        corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back(), false, {}});
       }
     }
   std::vector<SheetCorner> result;
@@ -147,7 +213,7 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
   return result;
 }
 
-/// Moves single surfaces so that they agree with others that they touch, and samples their curves again.
+/// Moves surfaces so that they agree with others that they touch, and samples their curves again.
 /// Where sheets have no intersection then, they agree more closely, since where they bend sharply a fold says
 /// where it is only so, and stay tangent around the corners there.
 void ModelTrimmer::joinTangent() {
@@ -192,10 +258,12 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps, co
                         pointOfCorner(ends[1], curve.sampled[0].point.back())},
                        {corners.count(ends[0]) > 0, corners.count(ends[1]) > 0}});
   }
-  const auto joined = joinTangentSheets(
-      sheets_, tangent, tangentCorners(), mayMove(),
-      {kStripWidth * tolerance_, kTangentGap * model_.diagonal, kTangentError}, threads_, mover());
-  for (const int k : joined.moved) moved_.insert(sheetRegion_[k]);
+  const SheetMover moves = mover();
+  const auto joined =
+      joinTangentSheets(sheets_, tangent, tangentCorners(),
+                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal, kTangentError}, threads_,
+                        moves);
+  for (const int body : joined.moved) moved_.insert(sheetRegion_[moves.bodies()[body].first]);
   numberSheets();
   std::size_t number = 0;
   for (const auto& [id, gap] : gaps) {
@@ -203,18 +271,19 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps, co
     curves_.at(id).tangent = joined.tangent[number++];
   }
   const auto hasMoved = [&](const SheetSide& side) {
-    return std::binary_search(joined.moved.begin(), joined.moved.end(), sheetOf(*side.run));
+    return std::binary_search(joined.moved.begin(), joined.moved.end(), moves.bodyOf(sheetOf(*side.run)));
   };
   forEachCurve([&](int id, CurveWithSides& curve) {
     if (std::none_of(curve.sides.begin(), curve.sides.end(), hasMoved)) return;
     sample(id, curve);
     if (curve.intersection || curve.folded) intersect(curve);
   });
-  const auto movable = mayMove();
   std::vector<int> apart;
   for (const auto& [id, gap] : gaps) {
     const CurveWithSides& curve = curves_.at(id);
-    const bool both = movable[sheetOf(*curve.sides[0].run)] && movable[sheetOf(*curve.sides[1].run)];
+    const SheetBody &first = moves.ofSheet(sheetOf(*curve.sides[0].run)),
+                    &second = moves.ofSheet(sheetOf(*curve.sides[1].run));
+    const bool both = first.mayMove() && second.mayMove();
     if (both && !curvePieces_->isPolyline(id) && !curve.intersection) apart.push_back(id);
   }
   return apart;

@@ -80,8 +80,8 @@ class ModelTrimmer {
 
   /// \param tolerances by region: how far free edges may be from their curves, model units
   SplineModel trim(const std::vector<double>& tolerances) const;
-  /// How far the regions whose surfaces were moved are from them now.
-  std::map<int, ChartDeviation> movedRegions() const;
+  /// How far the regions whose surfaces were moved are from them now, by chart.
+  std::map<int, std::vector<ChartDeviation>> movedRegions() const;
 
  private:
   void makeSheets();
@@ -105,8 +105,9 @@ class ModelTrimmer {
   long numberOfRegion(int r) const;
   std::vector<SheetCorner> tangentCorners() const;
   ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
-  bool acceptsMoved(int sheet, const SplineSurface& surface, bool lastResort) const;
-  std::vector<char> mayMove() const;
+  ChartDeviation deviationOfChart(int r, int chart, const SplineSurface& surface) const;
+  bool acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const;
+  std::vector<SheetBody> bodies() const;
   SheetMover mover() const;
   void meetInCorners();
   void joinTangent();
@@ -143,6 +144,7 @@ class ModelTrimmer {
   CornerPoint cornerOnBorders(const std::vector<int>& members);
   void placeInnerPoints();
   int layoutPoint(const CornerUse& use) const;
+  std::optional<Eigen::Vector2d> borderEnd(const BoundaryRun& run, const RunEnd& end) const;
   bool endsFold(int corner) const;
 
   struct CurveEdge {

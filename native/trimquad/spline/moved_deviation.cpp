@@ -2,6 +2,7 @@
 
 #include "trimquad/base/parallel.h"
 #include "trimquad/spline/deviation.h"
+#include "trimquad/spline/layout_samples.h"
 
 namespace trimquad {
 namespace {
@@ -31,6 +32,22 @@ std::vector<SurfaceSample> samplesFor(const SplineSurface& surface, const Region
   auto samples = source.make(space, true, threads, progress);
   findFeet(surface, samples, threads, progress);
   return samples;
+}
+
+std::vector<std::vector<SurfaceSample>> samplesByChart(const FittedSurface& fitted, const Region& region,
+                                                       const GridMap& map, int threads,
+                                                       const Progress& progress) {
+  std::vector<std::vector<SurfaceSample>> result(fitted.surfaces.size());
+  JoinedSpace space(*fitted.layout);
+  space.charts = fitted.continuation->knots.charts;
+  LayoutSamples source(region, map, *fitted.layout, progress);
+  for (auto& sample : source.make(space, true, threads, progress))
+    result[sample.chart].push_back(std::move(sample));
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    findFeet(fitted.surfaces[c], result[c], threads, progress);
+    std::erase_if(result[c], [&](const SurfaceSample& s) { return s.distance > fitted.maxDeviation; });
+  }
+  return result;
 }
 
 ChartDeviation deviationFrom(const SplineSurface& surface, std::vector<SurfaceSample> samples, int threads,

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "trimquad/base/progress.h"
+#include "trimquad/spline/joined_space.h"
+#include "trimquad/spline/layout.h"
 #include "trimquad/spline/spline_geometry.h"
 
 namespace trimquad {
@@ -24,5 +27,16 @@ struct SurfaceMove {
 /// where nothing does, or where `surface` has multiple knots.
 std::optional<SplineSurface> movedSurface(const SplineSurface& surface, const std::vector<SurfaceMove>& moves,
                                           double fade, int maxPoles, const Progress& progress);
+
+/// The charts that move where some have moves: these, and those beside them; ascending.
+std::vector<int> movingCharts(const Layout& layout, const std::map<int, std::vector<SurfaceMove>>& moves);
+
+/// The same for the surfaces of a region's charts, which stay joined: those of the moving charts.
+/// \param surfaces by chart \param knots how they are joined; each surface's own may have become finer
+/// \param moves by chart
+std::optional<std::map<int, SplineSurface>> movedSurfaces(
+    const std::vector<const SplineSurface*>& surfaces, const Layout& layout, const JoinedKnots& knots,
+    const std::map<int, std::vector<SurfaceMove>>& moves, double fade, int maxPoles,
+    const Progress& progress);
 
 }  // namespace trimquad

@@ -60,8 +60,9 @@ struct SplineModel {
   /// Edges between surfaces that are nearly tangent and more than a millionth of the model's diagonal apart:
   /// on the first face's surface, the second one's only within the edge's tolerance.
   int looseEdges = 0;
-  /// By region whose surface was moved to agree with others that it touches: how far it lies from it now.
-  std::map<int, ChartDeviation> moved = {};
+  /// By region whose surfaces were moved to agree with others that they touch: how far it lies from them now,
+  /// by chart.
+  std::map<int, std::vector<ChartDeviation>> moved = {};
 };
 
 }  // namespace trimquad

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "trimquad/base/parallel.h"
 #include "trimquad/spline/fold_plan.h"
@@ -174,31 +175,33 @@ void appendMovesToCurve(const StripMoves& strip, const LedToCorners& lead, const
   }
 }
 
-/// What sheet `moving` has to move by in a corner to meet the one of lower rank that has the same tangents
+/// What body `moving` has to move by in a corner to meet the sheet of lower rank that has the same tangents
 /// there.
-/// \param own the sheet before it moves
+/// \param own the sheets before it moves \param rank by sheet
 template <class Rank>
-void appendCornerMove(const SheetCorner& corner, int moving, const Sheet& own,
-                      const std::vector<Sheet>& sheets, const Rank& rank, double error,
-                      std::vector<SurfaceMove>& moves) {
-  const auto use = std::find_if(corner.uses.begin(), corner.uses.end(),
-                                [&](const SheetCorner::Use& u) { return u.sheet == moving; });
-  if (use == corner.uses.end()) return;
-  const Eigen::Vector2d y = own.footPoint(corner.point, use->at);
-  const auto at = own.jet(y);
-  const SheetCorner::Use* still = nullptr;
-  SplineSurface::Jet there;
-  for (const auto& other : corner.uses) {
-    if (!(rank(other.sheet) < rank(moving)) || (still && !(rank(other.sheet) < rank(still->sheet)))) continue;
-    const auto jet = sheets[other.sheet].jet(sheets[other.sheet].footPoint(corner.point, other.at));
-    if (normal(jet).cross(normal(at)).norm() > kSharp) continue;
-    still = &other;
-    there = jet;
+void appendCornerMoves(const SheetCorner& corner, int moving, const std::vector<Sheet>& own,
+                       const std::vector<Sheet>& sheets, const SheetMover& mover, const Rank& rank,
+                       double error, SheetMoves& moves) {
+  for (const auto& use : corner.uses) {
+    if (mover.bodyOf(use.sheet) != moving) continue;
+    const Eigen::Vector2d y = own[use.sheet].footPoint(corner.point, use.at);
+    const auto at = own[use.sheet].jet(y);
+    const SheetCorner::Use* still = nullptr;
+    SplineSurface::Jet there;
+    for (const auto& other : corner.uses) {
+      if (!(rank(other.sheet) < rank(use.sheet)) || (still && !(rank(other.sheet) < rank(still->sheet))))
+        continue;
+      const auto jet = sheets[other.sheet].jet(sheets[other.sheet].footPoint(corner.point, other.at));
+      if (normal(jet).cross(normal(at)).norm() > kSharp) continue;
+      still = &other;
+      there = jet;
+    }
+    if (!still) continue;
+    // Across the sheet only: along it the feet differ as little.
+    const Eigen::Vector3d n = normal(at);
+    moves[use.sheet].push_back({y, n.dot(there.s - at.s) * n, {1, 1}, kCornerWeight, error});
+    if (mover.bodies()[moving].isSingle()) return;
   }
-  if (!still) return;
-  // Across the sheet only: along it the feet differ as little.
-  const Eigen::Vector3d n = normal(at);
-  moves.push_back({y, n.dot(there.s - at.s) * n, {1, 1}, kCornerWeight, error});
 }
 
 /// One side of a curve.
@@ -210,20 +213,19 @@ struct CurveSide {
 class SheetJoiner {
  public:
   SheetJoiner(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-              const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-              const JoinLimits& limits, int threads, const SheetMover& mover)
+              const std::vector<SheetCorner>& corners, const JoinLimits& limits, int threads,
+              const SheetMover& mover)
       : sheets_(sheets),
         fitted_(sheets),
         curves_(curves),
         corners_(corners),
-        mayMove_(mayMove),
         limits_(limits),
         threads_(threads),
         mover_(mover),
-        sides_(sheets.size()),
-        states_(sheets.size()) {
+        sides_(mover.bodies().size()),
+        states_(mover.bodies().size()) {
     for (std::size_t c = 0; c < curves.size(); ++c)
-      for (const int side : {0, 1}) sides_[curves[c].sides[side].sheet].push_back({c, side});
+      for (const int side : {0, 1}) sides_[bodyOf(curves[c].sides[side])].push_back({c, side});
     plans_.resize(curves.size());
     parallelEach(int(curves.size()), threads, [&](int c) {
       const auto& [a, b] = curves[c].sides;
@@ -234,27 +236,31 @@ class SheetJoiner {
   }
 
   JoinedSheets join() {
-    // Sheets that move onto curves alone do not depend on each other.
+    std::vector<int> moving;
+    for (int k = 0; k < int(states_.size()); ++k)
+      if (mover_.bodies()[k].mayMove() && !sides_[k].empty()) moving.push_back(k);
+    std::sort(moving.begin(), moving.end(), [&](int a, int b) { return rank(a) < rank(b); });
+    // Those that move onto curves alone do not depend on each other.
     std::vector<int> independent;
-    for (int k = 0; k < int(sheets_.size()); ++k)
-      if (mayMove_[k] && !sides_[k].empty() && movesOntoCurvesOnly(k)) independent.push_back(k);
+    for (const int k : moving)
+      if (movesOntoCurvesOnly(k)) independent.push_back(k);
     auto states = states_;
     parallelEach(int(independent.size()), threads_,
                  [&](int i) { states[independent[i]] = moved(independent[i]); });
     states_ = std::move(states);
-    for (int k = 0; k < int(sheets_.size()); ++k)
-      if (mayMove_[k] && !sides_[k].empty() && !movesOntoCurvesOnly(k)) states_[k] = moved(k);
+    for (const int k : moving)
+      if (!movesOntoCurvesOnly(k)) states_[k] = moved(k);
     // Those that touch sheets which did not reach their curves follow these.
-    for (int k = 0; k < int(sheets_.size()); ++k)
-      if (mayMove_[k] && std::any_of(sides_[k].begin(), sides_[k].end(),
-                                     [&](const CurveSide& s) { return onCurve(s.curve) && follows(k, s); }))
+    for (const int k : moving)
+      if (std::any_of(sides_[k].begin(), sides_[k].end(),
+                      [&](const CurveSide& s) { return onCurve(s.curve) && follows(k, s); }))
         moveAgain(k);
     JoinedSheets result;
-    for (int k = 0; k < int(sheets_.size()); ++k)
+    for (int k = 0; k < int(states_.size()); ++k)
       if (states_[k].moved) result.moved.push_back(k);
     for (std::size_t c = 0; c < curves_.size(); ++c) {
       const auto& [a, b] = curves_[c].sides;
-      const bool folded = onCurve(c) && states_[a.sheet].turned && states_[b.sheet].turned;
+      const bool folded = onCurve(c) && states_[bodyOf(a)].turned && states_[bodyOf(b)].turned;
       result.folded.push_back(folded);
       result.tangent.push_back(folded ? plans_[c].tangent : std::vector<TangentStretch>());
     }
@@ -262,21 +268,28 @@ class SheetJoiner {
   }
 
  private:
-  /// What became of a sheet.
+  /// What became of a body.
   struct State {
     bool moved = false, turned = false;
     bool stuck = false;  ///< it is not on its curves
   };
 
+  int bodyOf(const TangentCurve::Side& side) const { return mover_.bodyOf(side.sheet); }
+
   bool onCurve(std::size_t c) const {
     const auto& [a, b] = curves_[c].sides;
-    return curves_[c].smooth && mayMove_[a.sheet] && mayMove_[b.sheet];
+    const SheetBody &first = mover_.ofSheet(a.sheet), &second = mover_.ofSheet(b.sheet);
+    return curves_[c].smooth && first.mayMove() && second.mayMove();
   }
-  std::pair<bool, int> rank(int sheet) const { return {bool(mayMove_[sheet]), sheet}; }
-  int otherSheet(const CurveSide& s) const { return curves_[s.curve].sides[1 - s.side].sheet; }
-  /// Whether sheet `k` moves onto the other one rather than onto the curve.
+  /// Those of lower rank stay where those of higher rank move onto them.
+  std::tuple<bool, bool, int> rank(int body) const {
+    const SheetBody& b = mover_.bodies()[body];
+    return {b.mayMove(), b.isSingle(), body};
+  }
+  const TangentCurve::Side& otherSide(const CurveSide& s) const { return curves_[s.curve].sides[1 - s.side]; }
+  /// Whether body `k` moves onto the other one rather than onto the curve.
   bool follows(int k, const CurveSide& s) const {
-    const int still = otherSheet(s);
+    const int still = bodyOf(otherSide(s));
     if (!onCurve(s.curve)) return rank(still) < rank(k);
     return states_[still].stuck && (!states_[k].stuck || still < k);
   }
@@ -291,7 +304,7 @@ class SheetJoiner {
   std::array<bool, 2> fixedEnds(std::size_t c, int side) const {
     std::array<bool, 2> fixed{};
     for (const int end : {0, 1})
-      for (const auto& other : sides_[curves_[c].sides[side].sheet])
+      for (const auto& other : sides_[bodyOf(curves_[c].sides[side])])
         for (const int otherEnd : {0, 1}) {
           if (other.curve == c && otherEnd == end) continue;
           if (curves_[other.curve].corners[otherEnd] != curves_[c].corners[end]) continue;
@@ -301,16 +314,16 @@ class SheetJoiner {
     return fixed;
   }
 
-  /// Whether where sheet `k` moves depends on no other one.
+  /// Whether where body `k` moves depends on no other one.
   bool movesOntoCurvesOnly(int k) const {
     return std::all_of(sides_[k].begin(), sides_[k].end(),
                        [&](const CurveSide& s) { return onCurve(s.curve); }) &&
            std::all_of(corners_.begin(), corners_.end(),
                        [&](const SheetCorner& c) { return !holds(c, k) || endsACurveOf(k, c); });
   }
-  static bool holds(const SheetCorner& corner, int k) {
+  bool holds(const SheetCorner& corner, int k) const {
     return std::any_of(corner.uses.begin(), corner.uses.end(),
-                       [&](const SheetCorner::Use& use) { return use.sheet == k; });
+                       [&](const SheetCorner::Use& use) { return mover_.bodyOf(use.sheet) == k; });
   }
   bool endsACurveOf(int k, const SheetCorner& corner) const {
     return std::any_of(sides_[k].begin(), sides_[k].end(), [&](const CurveSide& s) {
@@ -319,72 +332,76 @@ class SheetJoiner {
     });
   }
 
-  std::vector<SurfaceMove> movesOf(int k, Turning turning) const {
-    std::vector<SurfaceMove> moves;
+  SheetMoves movesOf(int k, Turning turning) const {
+    SheetMoves moves;
     for (const auto& s : sides_[k]) {
       const auto& curve = curves_[s.curve];
-      const StripMoves strip(*curve.sampled, s.side, fitted_[k]);
+      const int sheet = curve.sides[s.side].sheet;
+      const StripMoves strip(*curve.sampled, s.side, fitted_[sheet]);
       if (follows(k, s)) {
-        appendMovesOnto(strip, sheets_[otherSheet(s)], curve.sampled->foot[1 - s.side], limits_.width,
-                        curve.gap, moves);
+        appendMovesOnto(strip, sheets_[otherSide(s).sheet], curve.sampled->foot[1 - s.side], limits_.width,
+                        curve.gap, moves[sheet]);
       } else if (movesToCurve(k, s)) {
         appendMovesToCurve(strip, LedToCorners(curve), plans_[s.curve], s.side, curve.sides[s.side].onLeft,
-                           turning, limits_, curve.gap, moves);
+                           turning, limits_, curve.gap, moves[sheet]);
       }
     }
     for (const auto& corner : corners_)
       if (!endsACurveOf(k, corner))
-        appendCornerMove(
-            corner, k, fitted_[k], sheets_, [&](int sheet) { return rank(sheet); }, limits_.gap, moves);
+        appendCornerMoves(
+            corner, k, fitted_, sheets_, mover_, [&](int sheet) { return rank(mover_.bodyOf(sheet)); },
+            limits_.gap, moves);
+    std::erase_if(moves, [](const auto& ofSheet) { return ofSheet.second.empty(); });
     return moves;
   }
   bool movesToCurve(int k, const CurveSide& s) const {
-    return onCurve(s.curve) && !states_[otherSheet(s)].stuck && !states_[k].stuck;
+    return onCurve(s.curve) && !states_[bodyOf(otherSide(s))].stuck && !states_[k].stuck;
   }
 
-  /// Moves sheet `k`.
+  /// Moves body `k`.
   State moved(int k) {
     const bool toCurve = std::any_of(sides_[k].begin(), sides_[k].end(),
                                      [&](const CurveSide& s) { return movesToCurve(k, s); });
     for (const bool lastResort : {false, true})
       for (const auto turning : {Turning::ToFold, Turning::AwayFrom, Turning::None}) {
         if (turning != Turning::ToFold && !toCurve) continue;
-        const auto moves = movesOf(k, turning);
+        const SheetMoves moves = movesOf(k, turning);
         if (moves.empty()) return {};
-        const int most = kMorePoles * int(fitted_[k].surface.poles.size()) + kFewPoles;
+        const int most = kMorePoles * mover_.poles(fitted_, k, moves) + kFewPoles;
         if (!mover_.move(sheets_, k, moves, toCurve ? kFadeFromCurve : kFade, most, lastResort)) continue;
         return {true, toCurve && turning != Turning::None, false};
       }
     return {false, false, true};
   }
   void moveAgain(int k) {
-    const Sheet before = sheets_[k];
-    sheets_[k] = fitted_[k];
+    const SheetBody& body = mover_.bodies()[k];
+    const auto from = sheets_.begin() + body.first, to = from + body.count;
+    const std::vector<Sheet> before(from, to);
+    std::copy(fitted_.begin() + body.first, fitted_.begin() + body.first + body.count, from);
     if (const State state = moved(k); !state.stuck)
       states_[k] = {state.moved, state.turned, states_[k].stuck};
     else
-      sheets_[k] = before;
+      std::copy(before.begin(), before.end(), from);
   }
 
   std::vector<Sheet>& sheets_;
   const std::vector<Sheet> fitted_;
   const std::vector<TangentCurve>& curves_;
   const std::vector<SheetCorner>& corners_;
-  const std::vector<char>& mayMove_;
   const JoinLimits limits_;
   int threads_;
   const SheetMover& mover_;
-  std::vector<std::vector<CurveSide>> sides_;  ///< by sheet
+  std::vector<std::vector<CurveSide>> sides_;  ///< by body
   std::vector<FoldPlan> plans_;                ///< by curve
-  std::vector<State> states_;                  ///< by sheet
+  std::vector<State> states_;                  ///< by body
 };
 
 }  // namespace
 
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                               const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                               const JoinLimits& limits, int threads, const SheetMover& mover) {
-  return SheetJoiner(sheets, curves, corners, mayMove, limits, threads, mover).join();
+                               const std::vector<SheetCorner>& corners, const JoinLimits& limits,
+                               int threads, const SheetMover& mover) {
+  return SheetJoiner(sheets, curves, corners, limits, threads, mover).join();
 }
 
 }  // namespace trimquad

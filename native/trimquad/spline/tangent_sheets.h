@@ -31,7 +31,7 @@ struct TangentCurve {
 inline constexpr double kTangentGap = 2e-7;
 
 struct JoinedSheets {
-  std::vector<int> moved;    ///< the sheets that have moved, ascending
+  std::vector<int> moved;    ///< the bodies that have moved, ascending
   std::vector<char> folded;  ///< by curve: whether its sheets now have a slight edge there
   std::vector<std::vector<TangentStretch>> tangent;  ///< by curve that is folded: where they have none
 };
@@ -46,12 +46,12 @@ struct JoinLimits {
 /// Moves sheets so that they agree with the others on the curves along which these touch them, and nearly in
 /// a strip around, and in the corners in which such curves end. Where both may move and the curve is smooth,
 /// both come to lie on it, and are turned about it until they make an edge of a fraction of a degree (a
-/// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, or the
-/// one that may. Around corners that say so, in which several such curves fix a sheet's tangent plane, and
-/// where an edge changes from a ridge to a valley, the sheets stay tangent. \param mayMove by sheet
+/// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, the
+/// single one, or the one that may. Around corners that say so, in which several such curves fix a sheet's tangent plane, and
+/// where an edge changes from a ridge to a valley, the sheets stay tangent.
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                               const std::vector<SheetCorner>& corners, const std::vector<char>& mayMove,
-                               const JoinLimits& limits, int threads, const SheetMover& mover);
+                               const std::vector<SheetCorner>& corners, const JoinLimits& limits,
+                               int threads, const SheetMover& mover);
 
 /// Sine of the angle between folded sheets from which on their intersection is looked for.
 inline constexpr double kSmallestFold = 5e-4;

@@ -267,14 +267,18 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
 }
 
 FittedSurface fittedAsMoved(const FittedSurface& fitted, const SplineModel& model, int region) {
-  const auto face = std::find_if(model.faces.begin(), model.faces.end(),
-                                 [&](const SplineFace& f) { return f.region == region; });
-  TRIMQUAD_ASSERT(face != model.faces.end() && model.moved.count(region) && !fitted.layout);
   FittedSurface result = fitted;
-  result.surface = face->surface;
-  result.deviations = {model.moved.at(region)};
-  result.maxDeviation = result.deviations[0].max;
-  result.rmsDeviation = result.deviations[0].rms;
+  for (const auto& face : model.faces)
+    if (face.region == region)
+      (fitted.layout ? result.surfaces[face.chart] : result.surface) = face.surface;
+  result.deviations = model.moved.at(region);
+  result.maxDeviation = 0;
+  for (std::size_t c = 0; c < result.deviations.size(); ++c) {
+    if (fitted.layout && result.surfaces[c].poles == fitted.surfaces[c].poles)
+      result.deviations[c] = fitted.deviations[c];
+    result.maxDeviation = std::max(result.maxDeviation, result.deviations[c].max);
+  }
+  if (!fitted.layout) result.rmsDeviation = result.deviations[0].rms;
   return result;
 }
 

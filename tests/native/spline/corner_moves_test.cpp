@@ -30,14 +30,17 @@ struct Around {
   explicit Around(const std::vector<Eigen::Vector3d>& normals) {
     for (int k = 0; k < int(normals.size()); ++k) {
       sheets.push_back(nearPlane(normals[k], 0.5 + k));
-      corner.uses.push_back({k, {0.01, -0.01}, normals[k].normalized()});
+      corner.uses.push_back({k, {0.01, -0.01}, false, normals[k].normalized()});
     }
   }
   std::vector<int> meet(const std::vector<char>& mayMove) {
     TrimMemory memory;
     const Progress progress;
-    const auto any = [](int, const SplineSurface&, bool) { return true; };
-    return meetInCorners(sheets, {corner}, mayMove, 1e-9, SheetMover(memory, any, progress));
+    const auto any = [](int, const std::map<int, SplineSurface>&, bool) { return true; };
+    const Layout unknown;
+    std::vector<SheetBody> bodies;
+    for (int k = 0; k < int(sheets.size()); ++k) bodies.push_back({k, 1, mayMove[k] ? nullptr : &unknown});
+    return meetInCorners(sheets, {corner}, 1e-9, SheetMover(bodies, memory, any, progress));
   }
   SplineSurface::Jet jetAt(int k, const Eigen::Vector3d& p) const {
     return sheets[k].jet(sheets[k].footPoint(p, {0, 0}));
@@ -86,12 +89,13 @@ TEST(CornerMoves, LeaveSheetsAloneThatMayNotBecomeWhatTheyWould) {
   int asked = 0;
   TrimMemory memory;
   const Progress progress;
-  const auto none = [&](int, const SplineSurface&, bool) {
+  const auto none = [&](int, const std::map<int, SplineSurface>&, bool) {
     ++asked;
     return false;
   };
+  const std::vector<SheetBody> bodies = {{0}, {1}, {2}, {3}};
   const auto moved =
-      meetInCorners(around.sheets, {around.corner}, {1, 1, 1, 1}, 1e-9, SheetMover(memory, none, progress));
+      meetInCorners(around.sheets, {around.corner}, 1e-9, SheetMover(bodies, memory, none, progress));
   EXPECT_TRUE(moved.empty());
   EXPECT_EQ(asked, 8);  // with the tangent plane and without it
 }

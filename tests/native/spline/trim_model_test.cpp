@@ -285,7 +285,7 @@ void expectSame(const SplineModel& a, const SplineModel& b) {
   for (std::size_t f = 0; f < a.faces.size(); ++f)
     EXPECT_EQ(a.faces[f].surface.poles, b.faces[f].surface.poles);
   ASSERT_EQ(a.moved.size(), b.moved.size());
-  for (const auto& [region, deviation] : a.moved) EXPECT_EQ(deviation.max, b.moved.at(region).max);
+  for (const auto& [region, deviation] : a.moved) EXPECT_EQ(deviation.at(0).max, b.moved.at(region).at(0).max);
 }
 
 TEST(TrimModel, theNumberOfThreadsChangesNothing) {
