@@ -13,9 +13,6 @@
 namespace trimquad {
 namespace {
 
-/// Weight of exact conditions in the quadratic, relative to the data: much more would drown the fairness in
-/// rounding.
-constexpr double kExactWeight = 1e6;
 constexpr int kMaxMultiplierSteps = 200;
 constexpr int kIdleMultiplierSteps = 60;
 /// Violations of exact conditions that are left, relative to the extent of the data.
@@ -217,7 +214,7 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
     for (int i = 0; i + degree + 1 < int(knots.size()); ++i) {
       const int span = knotSpan(knots, degree, (knots[i] + knots[i + degree + 1]) / 2);
       const double at = (knots[span] + knots[span + 1]) / 2;
-      Condition equal{{}, kExactWeight * scale * (knots[i + degree + 1] - knots[i]) / (degree + 1), true};
+      Condition equal{{}, exactWeight * scale * (knots[i + degree + 1] - knots[i]) / (degree + 1), true};
       for (int k : {0, 1}) {
         const Eigen::Vector2d &along = k == 0 ? along0 : along1, &over = k == 0 ? over0 : over1;
         const int axis = 1 - border.axis(k);
@@ -252,7 +249,7 @@ void JoinedSpace::addBorder(int index, const std::vector<int>& offset,
   for (const bool start : {true, false})
     if ((start ? reachStart : reachEnd) > 0) {
       Condition flat = acrossAt(start ? 0 : length);
-      flat.weight = kExactWeight * step * step;
+      flat.weight = exactWeight * step * step;
       flat.exact = true;
       conditions.push_back(std::move(flat));
     }

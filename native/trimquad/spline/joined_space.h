@@ -16,6 +16,9 @@ struct JoinedKnots {
   /// Weight of the conditions next to a singularity, per quad of border, relative to squared distances per
   /// quad^2 of surface.
   double tangentWeight = 30;
+  /// Of exact conditions in the quadratic, relative to the data: much more would drown the fairness in
+  /// rounding.
+  double exactWeight = 1e6;
   /// By chart and corner in a singularity, as JoinedSpace::singularCorners(): how far from it narrow knot
   /// rectangles count in full towards fairness, quads.
   std::vector<std::vector<double>> stiffReach;

@@ -14,6 +14,8 @@ namespace {
 /// Weight of the plate's energy against an integral of squared distance along the curves: so small that it
 /// holds nothing back.
 constexpr double kPlate = 1e-9;
+/// The same of what joins charts, which the plate must not drown in.
+constexpr double kExact = 1;
 constexpr int kMaxRounds = 12;
 /// A direction of the parameter plane takes part in a curve's if it has this much of the other's share.
 constexpr double kTakesPart = 0.3;
@@ -223,6 +225,7 @@ std::optional<std::map<int, SplineSurface>> movedSurfaces(
     const Progress& progress) {
   ChartSpaces spaces{JoinedSpace(layout), movingCharts(layout, moves)};
   static_cast<JoinedKnots&>(spaces.space) = knots;
+  spaces.space.exactWeight = kExact;
   for (std::size_t c = 0; c < surfaces.size(); ++c) {
     auto own = spaceOf(*surfaces[c]);
     if (!own) return {};

@@ -11,6 +11,7 @@
 #include "support/fit_figures.h"
 #include "support/sample_maps.h"
 #include "trimquad/base/error.h"
+#include "trimquad/spline/moved_surface.h"
 
 namespace trimquad {
 namespace {
@@ -65,6 +66,44 @@ TEST(ChartsFit, wavySheetOfFiveChartsWithStaggeredTJoints) {
     EXPECT_LE(f.regularJump, 1e-3);
     EXPECT_EQ(f.folds, 0);
   }
+}
+
+/// The line crosses three charts, and the moves are as large on both sides of their borders.
+TEST(ChartsFit, surfacesThatMoveStayJoined) {
+  const auto sheet = wavySheet(31);
+  const auto fitted = fitSurface(
+      sheet.region, sheet.map, {.tolerance = 3e-4, .bisections = {{0}, {0}, {2}, {2}}}, Progress());
+  ASSERT_EQ(fitted.surfaces.size(), 5u);
+  std::vector<const SplineSurface*> before;
+  for (const auto& surface : fitted.surfaces) before.push_back(&surface);
+  const double y = 1.5, error = 1e-6;
+  const auto height = [](double x) { return 1e-3 * std::sin(2 * x); };
+  std::map<int, std::vector<SurfaceMove>> moves;  // by chart
+  for (const auto f : sheet.map.mesh.faces())
+    for (const auto h : sheet.map.mesh.fh_range(f)) {
+      const auto [chart, at] =
+          footOf(fitted, sheet.map.mesh.point(sheet.map.mesh.to_vertex_handle(h)), f,
+                 sheet.map.scale.toQuads(sheet.map.corner[h.idx()]));
+      const Eigen::Vector3d p = before[chart]->point(at[0], at[1]);
+      if (std::abs(p.y() - y) > 0.04) continue;
+      moves[chart].push_back({at, height(p.x()) * Eigen::Vector3d::UnitZ(), {1, 0}, 0.1, error});
+    }
+  ASSERT_GE(moves.size(), 3u);
+  const auto moved = movedSurfaces(before, *fitted.layout, fitted.continuation->knots, moves, 1, 20000,
+                                   Progress());
+  ASSERT_TRUE(moved);
+  FittedSurface after = fitted;
+  for (const auto& [chart, surface] : *moved) after.surfaces[chart] = surface;
+  for (const auto& [chart, ofChart] : moves)
+    for (const auto& move : ofChart)
+      EXPECT_LE((after.surfaces[chart].point(move.at[0], move.at[1]) -
+                 before[chart]->point(move.at[0], move.at[1]) - move.by)
+                    .norm(),
+                1.01 * error);
+  const auto f = figures(after, sheet.region, sheet.map);
+  EXPECT_LE(f.gap, 1e-14);
+  EXPECT_LE(f.regularJump, 1e-3);
+  EXPECT_LE(f.max, 3e-4 + 1e-3);
 }
 
 TEST(ChartsFit, surfacesThatStayFarFromNoiseGiveUpBeforeTheyFollowIt) {
