@@ -57,7 +57,12 @@ def trim(result, progress):
                     memory,
                 )
                 result.native_shape = native.assemble(result.spline)
-            if not _refit_faulty(result, checks, progress) and not _take_back(result):
+            again = (
+                _refit_faulty(result, checks, progress)
+                or _fit_loose_closer(result, progress)
+                or _take_back(result)
+            )
+            if not again:
                 break
             result.spline = None  # its faces are at fault, or others may join them
         except Error as error:
@@ -212,6 +217,15 @@ def _fit_parts_closer(item, result, progress):
     """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
     parts = [(part,) for part in _touching(item, result) if part.cut_from is not None]
     return any(_at_once(_fit_closer, parts, result, progress))
+
+
+def _fit_loose_closer(result, progress):
+    """Fits regions of a CAD model more closely, once, whose surfaces are nearly tangent to others and too far from them to
+    be moved onto a common edge. Whether there are any that could be."""
+    if result.source.kind != "cad" or result.exhausted:
+        return False
+    loose = [(result.regions[k],) for k in result.spline.loose_regions]
+    return any(_at_once(_fit_closer, loose, result, progress))
 
 
 def _fit_around_closer(item, result, progress):

@@ -15,8 +15,8 @@ ENOUGH = 0.95
 # Poles that a fit to a part of the tolerance may take, by those that there are, and how many more in any case. The part 0.1
 # takes three times as many of smooth surfaces; more are no help where these are not.
 MORE_POLES, FEW_POLES = 5, 1000
-# Work of a region's fits after which no other ways of fitting it are tried; less where it can be cut instead. And the same
-# for a whole model, with the checks of its faces. 1e6 steps take about half a second. Work rather than time, so that results
+# Work of a region's fits after which no other ways of fitting it are tried; less, and with that of its maps, where it can be
+# cut instead. And the same for a whole model, with the checks of its faces. 1e6 steps take about half a second. Work rather than time, so that results
 # do not depend on the machine.
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map; several only
@@ -88,6 +88,7 @@ class RegionResult:
         self.before_revision = None  # surfaces before some of them were, the charts and why
         self.seconds = {}
         self.work = 0  # of its fits: samples whose feet were looked for
+        self.work_of_maps = 0
         self.may_be_divided = False  # along its sharp edges, as it failed
         self.cut_from = None
         self.fitted_closer = False
@@ -204,7 +205,8 @@ def _map_region(item, index, result, progress):
             if error.kind == "cancelled":
                 raise
             refined = item.mapped_region is not item.region
-            if error.coarse and halving < HALVINGS and not (refined and item.guidance is not None):
+            may_refine = error.coarse and not (refined and item.guidance is not None)
+            if may_refine and halving < HALVINGS and not exhausted(item, result, progress):
                 item.edge_length /= 2
                 item.region = item.mapped_region
                 item.grid = item.quads = item.fitted = None
@@ -321,6 +323,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
                 raise
         finally:
             item.work += other.work
+            item.work_of_maps += other.work_of_maps
             for stage, seconds in other.seconds.items():
                 item.seconds[stage] = item.seconds.get(stage, 0.0) + seconds
             if item.fitted_from is not other:
@@ -338,7 +341,7 @@ def exhausted(item, result, progress):
     """Whether fits took so much work that no other ways of fitting a region are to be tried."""
     if result.exhausted or item.work + result.work_in_vain > MOST_WORK:
         return True
-    return item.work > MOST_WORK_BEFORE_CUT and has_parts(item, result, progress)
+    return item.work + item.work_of_maps > MOST_WORK_BEFORE_CUT and has_parts(item, result, progress)
 
 
 def _without_creases(item, result):
@@ -374,8 +377,7 @@ def _map(item, index, result, progress):
     """The stages up to the grid map."""
     native = load()
     options = result.options
-    seed = _run(item, progress, "seamless", native.seed, item.bridged, str(options.field), item.guidance,
-                options.field_weight, item.edge_length, item.wanted_singularities)
+    seed = _run(item, progress, "seamless", _seed, item, options)
     item.field, item.seamless, item.field_edits = seed.field, seed.map, seed.field_edits
     if seed.refined:
         # The model's region gets halved edges; the field and all maps are of these.
@@ -391,6 +393,14 @@ def _map(item, index, result, progress):
         item.quantization = _run(item, progress, "quantize", native.quantize, item.tmesh, options.optimal)
     if options.wants("optimize"):
         _grid_map(item, index, result, progress)
+
+
+def _seed(item, options, progress):
+    try:
+        return load().seed(item.bridged, str(options.field), item.guidance, options.field_weight, item.edge_length,
+                           item.wanted_singularities, progress)
+    finally:
+        item.work_of_maps += progress.work
 
 
 def _grid_map(item, index, result, progress):

@@ -24,6 +24,8 @@ constexpr double kScaffoldWeight = 1e-2;  ///< of the region's energy, for the s
 /// Least relative decrease of the energy in a round, and rounds in a row that may stay below it.
 constexpr double kWorthARound = 2e-3;
 constexpr int kPatience = 3;
+/// Steps of Progress that a triangle's share of an iteration takes.
+constexpr long kWorkOnTriangle = 8;
 
 /// A plane region with a collar and rings around its outer loop, and its other holes filled by a fan each;
 /// positions in the plane.
@@ -331,6 +333,7 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
     map.remesh();
     const double energy = map.improve(follow, [&] {
       ++counters.iterations;
+      progress.addWork(kWorkOnTriangle * long(mesh.n_faces()));
       progress.check();
     });
     progress.report(0.5 + 0.5 * round / kRounds);

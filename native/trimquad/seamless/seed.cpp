@@ -62,12 +62,20 @@ std::optional<Error> tryField(const Region& region, double edgeLength, const Fie
   return failure;
 }
 
+/// Counts what was spent as work in the end, whether there is a map or none.
+struct CountedWork {
+  const StepBudget& budget;
+  const Progress& progress;
+  ~CountedWork() { progress.addWork(budget.steps()); }
+};
+
 }  // namespace
 
 Seed seed(const Region& region, const SeedOptions& options, const Progress& progress) {
   requireArea(region.mesh);
   Seed result;
   StepBudget budget;
+  const CountedWork counted{budget, progress};
   const auto start = std::chrono::steady_clock::now();
   const FieldGuidance guidance = guidanceFor(region, options, progress);
   result.fieldSeconds = secondsSince(start);

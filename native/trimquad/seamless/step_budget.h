@@ -13,7 +13,13 @@ class StepBudget {
   static StepBudget ofWork(double work) { return StepBudget(work / kWork); }
 
   bool spent() const { return left_ <= 0; }
-  void spend(double work) { left_ -= work; }
+  void spend(double work) {
+    left_ -= work;
+    used_ += work;
+  }
+  /// All that was spent, in Progress' steps: a million take about half a second, for the most work is not on
+  /// systems so large that they are solved at full speed.
+  long steps() const { return long(used_ / (kWork / 200e6)); }
 
   /// Puts a share of what is left aside while some attempts run. Returns what is put aside.
   double setAside(double share) {
@@ -27,7 +33,7 @@ class StepBudget {
 
  private:
   static constexpr double kWork = 4e11;  // multiply-adds, about a minute
-  double left_;
+  double left_, used_ = 0;
 };
 
 }  // namespace trimquad

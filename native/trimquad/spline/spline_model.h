@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "trimquad/spline/chart_deviation.h"
@@ -60,6 +61,7 @@ struct SplineModel {
   /// Edges between surfaces that are nearly tangent and more than a millionth of the model's diagonal apart:
   /// on the first face's surface, the second one's only within the edge's tolerance.
   int looseEdges = 0;
+  std::set<int> looseRegions = {};  ///< whose surfaces these are between
   /// By region whose surfaces were moved to agree with others that they touch: how far it lies from them now,
   /// by chart.
   std::map<int, std::vector<ChartDeviation>> moved = {};

@@ -124,7 +124,10 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
       }
       const SplineEdgeId id{int(result.edges.size())};
       result.edges.push_back({edge[i].curve, start, end, std::max(kSmallestTolerance, 1.01 * edge[i].gap)});
-      result.looseEdges += loose && edge[i].gap > kLooseGap * model_.diagonal;
+      if (loose && edge[i].gap > kLooseGap * model_.diagonal) {
+        ++result.looseEdges;
+        for (const auto* side : sides) result.looseRegions.insert(side->run->region);
+      }
       for (std::size_t k = 0; k < sides.size(); ++k) {
         const bool forward = sides[k]->run->forward;
         pieces[sides[k]->run].push_back(
