@@ -47,8 +47,9 @@ constexpr int kPatience = 4;
 /// charts, or noise, which knots without end would follow.
 constexpr int kPatienceFar = 1;
 constexpr double kFar = 5;
-/// With so few poles that says nothing yet.
+/// With so few poles that says nothing yet: a sharp bend keeps its deviation until knots are as narrow as it.
 constexpr int kFewPoles = 1000;
+constexpr int kPatienceWithFew = 10;
 /// Multiples of the poles of the closest surfaces so far, and of the closest that are turned over nowhere, at
 /// which a fit that came no closer since is given up; the latter where there are too many folds to be taken:
 /// more knots fold it more.
@@ -531,7 +532,8 @@ bool FitRounds::refine() {
   const bool vain =
       poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
                               (manyFolds && poles() > kVainCleanPoles * double(closestClean_.poles)));
-  if (hopeless || vain || idle_ > (far ? kPatienceFar : kPatience) || !insertKnots() || poles() > maxPoles_)
+  const int patience = far ? kPatienceFar : poles() > kFewPoles ? kPatience : kPatienceWithFew;
+  if (hopeless || vain || idle_ > patience || !insertKnots() || poles() > maxPoles_)
     throw unreachable();
   return true;
 }
