@@ -533,8 +533,7 @@ bool FitRounds::refine() {
       poles() > kFewPoles && (poles() > kVainPoles * closest_.poles ||
                               (manyFolds && poles() > kVainCleanPoles * double(closestClean_.poles)));
   const int patience = far ? kPatienceFar : poles() > kFewPoles ? kPatience : kPatienceWithFew;
-  if (hopeless || vain || idle_ > patience || !insertKnots() || poles() > maxPoles_)
-    throw unreachable();
+  if (hopeless || vain || idle_ > patience || !insertKnots() || poles() > maxPoles_) throw unreachable();
   return true;
 }
 

@@ -100,9 +100,9 @@ CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
       points.insert({region, point});
   }
   if (points.empty())
-    return cornerPoint(p, sheets, guess, reach_,
-                       members.size() == 2 && endsFold(uses_[members.front()].corner) ? kSmallestFold
-                                                                                      : kSmallestCrossing);
+    return cornerPoint(
+        p, sheets, guess, reach_,
+        members.size() == 2 && endsFold(uses_[members.front()].corner) ? kSmallestFold : kSmallestCrossing);
   CornerPoint corner{Eigen::Vector3d::Zero(), guess};
   bool placed = false;
   for (const auto& [region, point] : points) {

@@ -93,8 +93,7 @@ ChartDeviation ModelTrimmer::deviationOfChart(int r, int chart, const SplineSurf
   const auto samples = [&] {
     using Samples = std::pair<std::shared_ptr<const std::vector<std::vector<SurfaceSample>>>, Known>;
     return memory_
-        .recall<Samples>("samples",
-                         key,
+        .recall<Samples>("samples", key,
                          [&] {
                            return Samples(std::make_shared<const std::vector<std::vector<SurfaceSample>>>(
                                               samplesByChart(fit, region, *maps_[r], threads_, progress_)),
@@ -120,8 +119,8 @@ bool ModelTrimmer::acceptsMoved(const std::map<int, SplineSurface>& surfaces, bo
   const double most = std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation);
   return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& ofSheet) {
     const auto& [sheet, surface] = ofSheet;
-    const ChartDeviation deviation = borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface)
-                                                 : deviationOf(r, surface, false);
+    const ChartDeviation deviation =
+        borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface) : deviationOf(r, surface, false);
     return deviation.max <= most;
   });
 }
@@ -259,10 +258,9 @@ std::vector<int> ModelTrimmer::joinTangent(const std::map<int, double>& gaps, co
                        {corners.count(ends[0]) > 0, corners.count(ends[1]) > 0}});
   }
   const SheetMover moves = mover();
-  const auto joined =
-      joinTangentSheets(sheets_, tangent, tangentCorners(),
-                        {kStripWidth * tolerance_, kTangentGap * model_.diagonal, kTangentError}, threads_,
-                        moves);
+  const auto joined = joinTangentSheets(
+      sheets_, tangent, tangentCorners(),
+      {kStripWidth * tolerance_, kTangentGap * model_.diagonal, kTangentError}, threads_, moves);
   for (const int body : joined.moved) moved_.insert(sheetRegion_[moves.bodies()[body].first]);
   numberSheets();
   std::size_t number = 0;

@@ -18,7 +18,7 @@ struct SurfaceMove {
   Eigen::Vector2d along;  ///< direction, in the parameter plane, in which the moves vary from place to place
   double weight;          ///< length of the curve that it is a sample of and stands for, quads
   double error;           ///< by how much it may be missed, model units; HUGE_VAL where that does not count
-  bool firm = false;  ///< whether it weighs more and more while it is missed, and has narrower knot spans
+  bool firm = false;      ///< whether it weighs more and more while it is missed, and has narrower knot spans
 };
 
 /// The surface, with more knots, that moves as given, and less and less the further away from there: by a

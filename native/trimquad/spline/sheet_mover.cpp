@@ -51,8 +51,7 @@ bool SheetMover::move(std::vector<Sheet>& sheets, int body, const SheetMoves& mo
   }
   using Surfaces = std::optional<std::map<int, SplineSurface>>;
   const auto surfaces = memory_.recall<Surfaces>("move", std::move(key), [&]() -> Surfaces {
-    if (!b.isSingle())
-      return movedSurfaces(before, *b.layout, *b.knots, ofCharts, fade, maxPoles, progress_);
+    if (!b.isSingle()) return movedSurfaces(before, *b.layout, *b.knots, ofCharts, fade, maxPoles, progress_);
     auto surface = movedSurface(*before[0], ofCharts.at(0), fade, maxPoles, progress_);
     if (!surface) return {};
     return std::map<int, SplineSurface>{{0, std::move(*surface)}};

@@ -399,8 +399,8 @@ class SheetJoiner {
 }  // namespace
 
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                               const std::vector<SheetCorner>& corners, const JoinLimits& limits,
-                               int threads, const SheetMover& mover) {
+                               const std::vector<SheetCorner>& corners, const JoinLimits& limits, int threads,
+                               const SheetMover& mover) {
   return SheetJoiner(sheets, curves, corners, limits, threads, mover).join();
 }
 

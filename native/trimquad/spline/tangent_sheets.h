@@ -47,11 +47,11 @@ struct JoinLimits {
 /// a strip around, and in the corners in which such curves end. Where both may move and the curve is smooth,
 /// both come to lie on it, and are turned about it until they make an edge of a fraction of a degree (a
 /// fold), so that they have a well-defined intersection; else one moves onto the other, the later one, the
-/// single one, or the one that may. Around corners that say so, in which several such curves fix a sheet's tangent plane, and
-/// where an edge changes from a ridge to a valley, the sheets stay tangent.
+/// single one, or the one that may. Around corners that say so, in which several such curves fix a sheet's
+/// tangent plane, and where an edge changes from a ridge to a valley, the sheets stay tangent.
 JoinedSheets joinTangentSheets(std::vector<Sheet>& sheets, const std::vector<TangentCurve>& curves,
-                               const std::vector<SheetCorner>& corners, const JoinLimits& limits,
-                               int threads, const SheetMover& mover);
+                               const std::vector<SheetCorner>& corners, const JoinLimits& limits, int threads,
+                               const SheetMover& mover);
 
 /// Sine of the angle between folded sheets from which on their intersection is looked for.
 inline constexpr double kSmallestFold = 5e-4;

@@ -272,8 +272,7 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
 FittedSurface fittedAsMoved(const FittedSurface& fitted, const SplineModel& model, int region) {
   FittedSurface result = fitted;
   for (const auto& face : model.faces)
-    if (face.region == region)
-      (fitted.layout ? result.surfaces[face.chart] : result.surface) = face.surface;
+    if (face.region == region) (fitted.layout ? result.surfaces[face.chart] : result.surface) = face.surface;
   result.deviations = model.moved.at(region);
   result.maxDeviation = 0;
   for (std::size_t c = 0; c < result.deviations.size(); ++c) {

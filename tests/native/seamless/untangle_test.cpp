@@ -254,5 +254,14 @@ TEST(MapEnergy, ofANeighbourhoodChangesAsTheWholeDoes) {
   }
 }
 
+TEST(StepBudget, countsAllThatWasSpentWhateverIsPutAside) {
+  StepBudget budget;
+  budget.spend(4e9);
+  const double aside = budget.setAside(0.5);
+  budget.spend(4e9);
+  budget.add(aside);
+  EXPECT_EQ(budget.steps(), 4000000);
+}
+
 }  // namespace
 }  // namespace trimquad

@@ -71,8 +71,8 @@ TEST(ChartsFit, wavySheetOfFiveChartsWithStaggeredTJoints) {
 /// The line crosses three charts, and the moves are as large on both sides of their borders.
 TEST(ChartsFit, surfacesThatMoveStayJoined) {
   const auto sheet = wavySheet(31);
-  const auto fitted = fitSurface(
-      sheet.region, sheet.map, {.tolerance = 3e-4, .bisections = {{0}, {0}, {2}, {2}}}, Progress());
+  const auto fitted = fitSurface(sheet.region, sheet.map,
+                                 {.tolerance = 3e-4, .bisections = {{0}, {0}, {2}, {2}}}, Progress());
   ASSERT_EQ(fitted.surfaces.size(), 5u);
   std::vector<const SplineSurface*> before;
   for (const auto& surface : fitted.surfaces) before.push_back(&surface);
@@ -81,16 +81,15 @@ TEST(ChartsFit, surfacesThatMoveStayJoined) {
   std::map<int, std::vector<SurfaceMove>> moves;  // by chart
   for (const auto f : sheet.map.mesh.faces())
     for (const auto h : sheet.map.mesh.fh_range(f)) {
-      const auto [chart, at] =
-          footOf(fitted, sheet.map.mesh.point(sheet.map.mesh.to_vertex_handle(h)), f,
-                 sheet.map.scale.toQuads(sheet.map.corner[h.idx()]));
+      const auto [chart, at] = footOf(fitted, sheet.map.mesh.point(sheet.map.mesh.to_vertex_handle(h)), f,
+                                      sheet.map.scale.toQuads(sheet.map.corner[h.idx()]));
       const Eigen::Vector3d p = before[chart]->point(at[0], at[1]);
       if (std::abs(p.y() - y) > 0.04) continue;
       moves[chart].push_back({at, height(p.x()) * Eigen::Vector3d::UnitZ(), {1, 0}, 0.1, error});
     }
   ASSERT_GE(moves.size(), 3u);
-  const auto moved = movedSurfaces(before, *fitted.layout, fitted.continuation->knots, moves, 1, 20000,
-                                   Progress());
+  const auto moved =
+      movedSurfaces(before, *fitted.layout, fitted.continuation->knots, moves, 1, 20000, Progress());
   ASSERT_TRUE(moved);
   FittedSurface after = fitted;
   for (const auto& [chart, surface] : *moved) after.surfaces[chart] = surface;

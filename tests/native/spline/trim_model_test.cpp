@@ -4,6 +4,7 @@
 
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "support/trim_samples.h"
 #include "trimquad/base/error.h"
@@ -251,6 +252,7 @@ TEST(TrimModel, sheetsThatCannotMoveMeetLooselyAndSaySo) {
   for (auto& fit : sheets.fits) fit->surface = withKnotU(fit->surface, fit->surface.knotsU[10]);
   const auto model = sheets.trim();
   EXPECT_EQ(model.looseEdges, 1);
+  EXPECT_EQ(model.looseRegions, (std::set<int>{0, 1}));
   EXPECT_TRUE(model.moved.empty());
   EXPECT_EQ(model.edges.size(), 7u);
   const auto gaps = measuredGaps(model);
@@ -285,7 +287,8 @@ void expectSame(const SplineModel& a, const SplineModel& b) {
   for (std::size_t f = 0; f < a.faces.size(); ++f)
     EXPECT_EQ(a.faces[f].surface.poles, b.faces[f].surface.poles);
   ASSERT_EQ(a.moved.size(), b.moved.size());
-  for (const auto& [region, deviation] : a.moved) EXPECT_EQ(deviation.at(0).max, b.moved.at(region).at(0).max);
+  for (const auto& [region, deviation] : a.moved)
+    EXPECT_EQ(deviation.at(0).max, b.moved.at(region).at(0).max);
 }
 
 TEST(TrimModel, theNumberOfThreadsChangesNothing) {
