@@ -98,14 +98,18 @@ std::vector<Shape> facesOfFile(const SplineModel& model) {
   });
 }
 
-/// The pairs of faces whose boxes overlap, ascending.
-std::vector<std::pair<int, int>> closePairs(const std::vector<Shape>& faces) {
+/// The pairs of faces of one body whose boxes overlap, ascending. Bodies may touch each other, or cross:
+/// those of the input do.
+std::vector<std::pair<int, int>> closePairs(const SplineModel& model, const std::vector<Shape>& faces) {
   std::vector<Bnd_Box> boxes(faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f) BRepBndLib::Add(faces[f].topology(), boxes[f]);
+  std::vector<int> body(faces.size(), -1);
+  for (const auto& shell : model.shells)
+    for (const int f : shell.faces) body[f] = shell.body;
   std::vector<std::pair<int, int>> result;
   for (int a = 0; a < int(faces.size()); ++a)
     for (int b = a + 1; b < int(faces.size()); ++b)
-      if (!boxes[a].IsOut(boxes[b])) result.push_back({a, b});
+      if (body[a] == body[b] && !boxes[a].IsOut(boxes[b])) result.push_back({a, b});
   return result;
 }
 
@@ -225,7 +229,7 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   check(single);
   checkPairs(neighboursToCheckFirst(model, folded));
   if (std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
-    checkPairs(closePairs(facesInFile()));
+    checkPairs(closePairs(model, facesInFile()));
   return result;
 }
 

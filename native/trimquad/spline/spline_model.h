@@ -56,6 +56,7 @@ struct SplineModel {
   struct Shell {
     std::vector<int> faces;
     std::optional<int> solid;  ///< which solid the (closed) shell bounds
+    int body = 0;              ///< the same for the shells of one solid, and for the parts of one shell
   };
   std::vector<Shell> shells;
   /// Edges between surfaces that are nearly tangent and more than a millionth of the model's diagonal apart:

@@ -214,7 +214,10 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
 }
 
 void ModelTrimmer::appendShells(SplineModel& result) const {
-  for (const auto& shell : model_.shells) {
+  std::map<int, int> bodyOfSolid;
+  for (int s = 0; s < int(model_.shells.size()); ++s) {
+    const auto& shell = model_.shells[s];
+    const int body = shell.solid ? bodyOfSolid.try_emplace(*shell.solid, s).first->second : s;
     std::vector<int> faces;
     for (int f = 0; f < int(result.faces.size()); ++f)
       if (std::count(shell.regions.begin(), shell.regions.end(), result.faces[f].region)) faces.push_back(f);
@@ -235,6 +238,7 @@ void ModelTrimmer::appendShells(SplineModel& result) const {
       for (const auto& users : usersOf)
         if (!users.empty() && connected.root(users.front()) == root && users.size() != 2) closed = false;
       if (closed) part.solid = shell.solid;
+      part.body = body;
       result.shells.push_back(std::move(part));
     }
   }

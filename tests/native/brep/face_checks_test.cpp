@@ -43,6 +43,15 @@ TEST(FaceChecks, facesThatCrossAreFoundWhereverTheyAre) {
   for (const auto& faults : checksOf().faults(model, {}, 1, progress)) EXPECT_NE(faults, none);
 }
 
+TEST(FaceChecks, bodiesMayCrossEachOther) {
+  auto model = spikedFaces();
+  model.shells = {{{0}, {}, 0}, {{1}, {}, 1}};
+  EXPECT_EQ(checksOf().faults(model, {}, 1, progress), Faults(2));
+  // Two shells of one solid may not.
+  model.shells[1].body = 0;
+  EXPECT_NE(checksOf().faults(model, {}, 1, progress), Faults(2));
+}
+
 TEST(FaceChecks, theFileOfTheModelIsCheckedAsAWhole) {
   auto model = bulgedBox(0.8).trim();
   EXPECT_EQ(checksOf().faultsOfWhole(model, progress), std::vector<std::string>{});
