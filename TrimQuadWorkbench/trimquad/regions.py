@@ -16,8 +16,8 @@ ENOUGH = 0.95
 # takes three times as many of smooth surfaces; more are no help where these are not.
 MORE_POLES, FEW_POLES = 5, 1000
 # Work of a region's fits after which no other ways of fitting it are tried; less, and with that of its maps, where it can be
-# cut instead. And the same for a whole model, with the checks of its faces. 1e6 steps take about half a second. Work rather than time, so that results
-# do not depend on the machine.
+# cut instead. And the same for a whole model, with the checks of its faces. 1e6 steps take about half a second. Work rather
+# than time, so that results do not depend on the machine.
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map; several only
 # for a single one.
