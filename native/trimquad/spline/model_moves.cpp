@@ -54,63 +54,56 @@ std::vector<SheetBody> ModelTrimmer::bodies() const {
   return result;
 }
 
+/// How far samples of a region lie from a surface. \param key of the samples and the surface
+/// \param samples gives them, where this is not known yet
+template <class Samples>
+ChartDeviation ModelTrimmer::measured(int r, const SplineSurface& surface, ByteKey key,
+                                      const Samples& samples) const {
+  // The true surface is kept, so that its address means no other.
+  using Measured = std::pair<ChartDeviation, std::shared_ptr<const TrueSurface>>;
+  key.add(memory_.numberOf(surface));
+  const auto measure = [&] {
+    return Measured(deviationFrom(surface, samples(), threads_, progress_), model_.regions[r].surface);
+  };
+  return memory_.recall<Measured>("deviation", std::move(key), measure).first;
+}
+
+/// Samples of a region, made once. \param key of what they follow from
+template <class Make>
+auto ModelTrimmer::keptSamples(int r, const ByteKey& key, const Make& make) const {
+  using Made = std::shared_ptr<const decltype(make())>;
+  using Samples = std::pair<Made, std::shared_ptr<const TrueSurface>>;
+  return memory_
+      .recall<Samples>("samples", key,
+                       [&] {
+                         return Samples(std::make_shared<const decltype(make())>(make()),
+                                        model_.regions[r].surface);
+                       })
+      .first;
+}
+
 /// Of a region of one chart from a surface that may be its own; at samples that follow from the region and
 /// its fit, or as many as that surface's knots ask for.
 ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bool closely) const {
-  const Region& region = model_.regions[r];
-  // The true surface is kept, so that its address means no other.
-  using Known = std::shared_ptr<const TrueSurface>;
   const SplineSurface& dense = closely ? surface : fitted_[r]->surface;
   ByteKey key;
   key.add(numberOfRegion(r)).add(memory_.numberOf(dense));
-  const auto samples = [&] {
-    using Samples = std::pair<std::shared_ptr<const std::vector<SurfaceSample>>, Known>;
-    const auto make = [&] {
-      return std::make_shared<const std::vector<SurfaceSample>>(
-          samplesFor(dense, region, *maps_[r], fitted_[r]->chart, threads_, progress_));
-    };
-    if (closely) return make();
-    return memory_.recall<Samples>("samples", key, [&] { return Samples(make(), region.surface); }).first;
+  const auto make = [&] {
+    return samplesFor(dense, model_.regions[r], *maps_[r], fitted_[r]->chart, threads_, progress_);
   };
-  ByteKey ofSurface = key;
-  ofSurface.add(memory_.numberOf(surface));
-  using Measured = std::pair<ChartDeviation, Known>;
-  return memory_
-      .recall<Measured>(
-          "deviation", std::move(ofSurface),
-          [&] { return Measured(deviationFrom(surface, *samples(), threads_, progress_), region.surface); })
-      .first;
+  return measured(r, surface, key, [&] { return closely ? make() : *keptSamples(r, key, make); });
 }
 
 /// The same of one of a region's several charts.
 ChartDeviation ModelTrimmer::deviationOfChart(int r, int chart, const SplineSurface& surface) const {
-  const Region& region = model_.regions[r];
   const FittedSurface& fit = *fitted_[r];
   ByteKey key;
   key.add(numberOfRegion(r));
   for (const auto& s : fit.surfaces) key.add(memory_.numberOf(s));
-  using Known = std::shared_ptr<const TrueSurface>;
-  const auto samples = [&] {
-    using Samples = std::pair<std::shared_ptr<const std::vector<std::vector<SurfaceSample>>>, Known>;
-    return memory_
-        .recall<Samples>("samples", key,
-                         [&] {
-                           return Samples(std::make_shared<const std::vector<std::vector<SurfaceSample>>>(
-                                              samplesByChart(fit, region, *maps_[r], threads_, progress_)),
-                                          region.surface);
-                         })
-        .first;
-  };
-  ByteKey ofSurface = key;
-  ofSurface.add(chart).add(memory_.numberOf(surface));
-  using Measured = std::pair<ChartDeviation, Known>;
-  return memory_
-      .recall<Measured>("deviation", std::move(ofSurface),
-                        [&] {
-                          return Measured(deviationFrom(surface, (*samples())[chart], threads_, progress_),
-                                          region.surface);
-                        })
-      .first;
+  const auto make = [&] { return samplesByChart(fit, model_.regions[r], *maps_[r], threads_, progress_); };
+  ByteKey ofChart = key;
+  ofChart.add(chart);
+  return measured(r, surface, std::move(ofChart), [&] { return (*keptSamples(r, key, make))[chart]; });
 }
 
 /// Whether sheets of a region may become these surfaces.

@@ -104,6 +104,10 @@ class ModelTrimmer {
   ByteKey keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const;
   long numberOfRegion(int r) const;
   std::vector<SheetCorner> tangentCorners() const;
+  template <class Samples>
+  ChartDeviation measured(int r, const SplineSurface& surface, ByteKey key, const Samples& samples) const;
+  template <class Make>
+  auto keptSamples(int r, const ByteKey& key, const Make& make) const;
   ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
   ChartDeviation deviationOfChart(int r, int chart, const SplineSurface& surface) const;
   bool acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const;
