@@ -37,7 +37,7 @@ Region bumpyTorus(int n) {
   return region;
 }
 
-CrossField fieldOf(const Region& region) {
+CrossField guidedField(const Region& region) {
   return crossField(region, curvatureGuidance(region, Progress()), kGuidanceReach, Progress());
 }
 
@@ -49,7 +49,7 @@ struct Prepared {
   std::unique_ptr<SeamBasis> basis;
   std::unique_ptr<MapEnergy> energy;
 
-  explicit Prepared(int n) : region(bumpyTorus(n)), field(fieldOf(region)) {
+  explicit Prepared(int n) : region(bumpyTorus(n)), field(guidedField(region)) {
     StepBudget budget;
     map = seamlessMap(region, field, std::sqrt(surfaceArea(region.mesh) / 1000), Effort::Full, budget,
                       Progress());
@@ -86,7 +86,7 @@ void closedField(benchmark::State& state) {
 
 void closedSeamless(benchmark::State& state) {
   const Region region = bumpyTorus(int(state.range(0)));
-  const CrossField field = fieldOf(region);
+  const CrossField field = guidedField(region);
   const double edgeLength = std::sqrt(surfaceArea(region.mesh) / 1000);
   for (auto _ : state) {
     StepBudget budget;
@@ -97,7 +97,7 @@ void closedSeamless(benchmark::State& state) {
 
 void seamBasis(benchmark::State& state) {
   const Region region = bumpyTorus(int(state.range(0)));
-  const CrossField field = fieldOf(region);
+  const CrossField field = guidedField(region);
   for (auto _ : state) {
     const SeamGraph seams = seamGraph(region.mesh, field);
     benchmark::DoNotOptimize(SeamBasis(region.mesh, seams, {}));
@@ -164,17 +164,17 @@ void exactness(benchmark::State& state) {
 }
 
 /// 1k to 200k triangles.
-void sizes(benchmark::internal::Benchmark* bench) {
+void torusSizes(benchmark::internal::Benchmark* bench) {
   for (const int n : {8, 14, 25, 43, 79, 112}) bench->Arg(n);
   bench->ArgName("n")->Unit(benchmark::kMillisecond)->Complexity();
 }
 
 }  // namespace
 
-BENCHMARK(curvature)->Apply(sizes);
-BENCHMARK(closedField)->Apply(sizes);
-BENCHMARK(seamBasis)->Apply(sizes);
-BENCHMARK(poisson)->Apply(sizes);
-BENCHMARK(untangling)->Apply(sizes);
-BENCHMARK(closedSeamless)->Apply(sizes);
-BENCHMARK(exactness)->Apply(sizes);
+BENCHMARK(curvature)->Apply(torusSizes);
+BENCHMARK(closedField)->Apply(torusSizes);
+BENCHMARK(seamBasis)->Apply(torusSizes);
+BENCHMARK(poisson)->Apply(torusSizes);
+BENCHMARK(untangling)->Apply(torusSizes);
+BENCHMARK(closedSeamless)->Apply(torusSizes);
+BENCHMARK(exactness)->Apply(torusSizes);

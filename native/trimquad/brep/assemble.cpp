@@ -11,8 +11,6 @@
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColgp_Array1OfPnt2d.hxx>
 #include <TColgp_Array2OfPnt.hxx>
-#include <TopExp.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Edge.hxx>
@@ -24,6 +22,7 @@
 #include <map>
 
 #include "trimquad/brep/occt_guard.h"
+#include "trimquad/brep/occt_parts.h"
 
 namespace trimquad {
 namespace {
@@ -192,8 +191,7 @@ std::vector<Shape> assembledFaces(const SplineModel& model) {
 std::vector<int> faceOrder(const SplineModel& model) {
   return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no shape", [&] {
     const Assembly assembly(model);
-    TopTools_IndexedMapOfShape counted;
-    TopExp::MapShapes(assembly.shape(), TopAbs_FACE, counted);
+    const auto counted = elements(assembly.shape(), TopAbs_FACE);
     std::vector<int> order(counted.Extent());
     for (int f = 0; f < int(assembly.faces().size()); ++f)
       if (const int place = counted.FindIndex(assembly.faces()[f])) order[place - 1] = f;

@@ -7,17 +7,14 @@
 #include <cmath>
 
 #include "trimquad/base/error.h"
+#include "trimquad/brep/occt_parts.h"
 
 namespace trimquad {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kNewtonSteps = 12;
-
-Vector3d vec(const gp_XYZ& x) {
-  return {x.X(), x.Y(), x.Z()};
-}
+constexpr int kCurveSteps = 12;
 
 class CadCurve : public TrueCurve {
  public:
@@ -29,7 +26,7 @@ class CadCurve : public TrueCurve {
   double closest(const Vector3d& p, double guess) const override {
     double t = std::clamp(guess, first_, last_);
     double best = t, distance = (point(t) - p).squaredNorm();
-    for (int step = 0; step < kNewtonSteps; ++step) {
+    for (int step = 0; step < kCurveSteps; ++step) {
       const Vector3d d = tangent(t);
       const double square = d.squaredNorm();
       if (square <= 0) break;

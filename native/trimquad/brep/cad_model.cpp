@@ -13,15 +13,10 @@
 #include <numeric>
 
 #include "trimquad/base/error.h"
+#include "trimquad/brep/occt_parts.h"
 
 namespace trimquad {
 namespace {
-
-TopTools_IndexedMapOfShape elements(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
-  TopTools_IndexedMapOfShape map;
-  TopExp::MapShapes(shape, kind, map);
-  return map;
-}
 
 /// Groups of faces that hang together through shared edges.
 int connectedGroups(const TopoDS_Shape& shape) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "trimquad/brep/occt_parts.h"
 #include "trimquad/brep/surface_normal.h"
 #include "trimquad/mesh/aabb_tree.h"
 
@@ -16,13 +17,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kNewtonSteps = 15;
+constexpr int kSurfaceSteps = 15;
 /// How far a foot point may leave the parameter box of its triangle, in sizes of the box.
 constexpr double kBoxMargin = 1;
-
-Vector3d vec(const gp_XYZ& x) {
-  return {x.X(), x.Y(), x.Z()};
-}
 
 struct Jet {
   Vector3d s, su, sv, suu = Vector3d::Zero(), suv = Vector3d::Zero(), svv = Vector3d::Zero();
@@ -125,7 +122,7 @@ CadSurface::Place CadSurface::locate(const Vector3d& p, const TriangleTree::Hit&
   Place best{&patch, uv, inside, jetOf(*patch.surface, uv)};
   double distance = (best.jet.s - p).squaredNorm();
   Jet jet = best.jet;
-  for (int step = 0; step < kNewtonSteps; ++step) {
+  for (int step = 0; step < kSurfaceSteps; ++step) {
     const Vector2d next = (uv + newtonStep(jet, jet.s - p)).cwiseMax(low).cwiseMin(high);
     const Vector2d moved = next - uv;
     const double length = (moved.x() * jet.su + moved.y() * jet.sv).norm();

@@ -22,7 +22,7 @@ namespace {
 
 /// Radians between the normals of neighbouring triangles. Large, since the size of the triangles bounds it
 /// too.
-constexpr double kAngularDeflection = 0.5;
+constexpr double kMapAngle = 0.5;
 /// OpenCASCADE cannot triangulate some faces at one deflection that it can at another.
 constexpr int kAttempts = 3;
 
@@ -95,7 +95,7 @@ class FaceTriangles {
 };
 
 bool triangulated(const TopoDS_Face& face, double chord) {
-  BRepMesh_IncrementalMesh(face, chord, false, kAngularDeflection, false);
+  BRepMesh_IncrementalMesh(face, chord, false, kMapAngle, false);
   TopLoc_Location location;
   return !BRep_Tool::Triangulation(face, location).IsNull();
 }

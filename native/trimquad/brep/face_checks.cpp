@@ -3,8 +3,6 @@
 #include <BRepBndLib.hxx>
 #include <BRep_Builder.hxx>
 #include <Bnd_Box.hxx>
-#include <TopExp.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <algorithm>
 #include <optional>
@@ -13,6 +11,7 @@
 #include "trimquad/base/byte_key.h"
 #include "trimquad/base/parallel.h"
 #include "trimquad/brep/occt_guard.h"
+#include "trimquad/brep/occt_parts.h"
 
 namespace trimquad {
 namespace {
@@ -86,8 +85,7 @@ Shape compound(const std::vector<Shape>& faces) {
 std::vector<Shape> facesOfFile(const SplineModel& model) {
   return guarded(Error::Kind::Stage, "write", "the trimmed surfaces make no STEP file", [&] {
     const Shape read = shapeFromStep(stepText(assemble(model)), "STEP");
-    TopTools_IndexedMapOfShape counted;
-    TopExp::MapShapes(read.topology(), TopAbs_FACE, counted);
+    const auto counted = elements(read.topology(), TopAbs_FACE);
     const auto order = faceOrder(model);
     if (counted.Extent() != int(order.size())) return assembledFaces(model);  // faultsOfWhole() tells
     std::vector<std::optional<Shape>> placed(order.size());

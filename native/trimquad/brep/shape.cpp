@@ -7,8 +7,6 @@
 #include <BinTools_ShapeSet.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
-#include <TopExp.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shape.hxx>
 #include <cmath>
@@ -16,18 +14,9 @@
 #include <sstream>
 
 #include "trimquad/brep/occt_guard.h"
+#include "trimquad/brep/occt_parts.h"
 
 namespace trimquad {
-namespace {
-
-TopTools_IndexedMapOfShape elements(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
-  TopTools_IndexedMapOfShape map;
-  TopExp::MapShapes(shape, kind, map);
-  return map;
-}
-
-}  // namespace
-
 Shape::Shape(const TopoDS_Shape& topology) : topology_(std::make_shared<TopoDS_Shape>(topology)) {
   if (topology.IsNull()) throw inputError("read", "the shape is empty");
   if (faceCount() == 0) throw inputError("read", "the shape has no faces; only faces can be converted");

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "trimquad/field/angle.h"
+
 namespace trimquad {
 namespace {
-
-constexpr double kQuarter = std::numbers::pi / 2;
 
 /// Turn of the field from the face of h to the opposite one against parallel transport.
 double turnAcross(const SurfaceMesh& mesh, const Transport& transport, const CrossField& field,
@@ -15,7 +15,7 @@ double turnAcross(const SurfaceMesh& mesh, const Transport& transport, const Cro
   const FaceHandle f = mesh.face_handle(h), g = mesh.opposite_face_handle(h);
   const double whole = transport.angleOf(g, field.direction[g.idx()]) -
                        transport.angleOf(f, field.direction[f.idx()]) - transport.angle[h.idx()] -
-                       kQuarter * field.matching[h.idx()];
+                       kQuarterTurn * field.matching[h.idx()];
   return std::remainder(whole, 2 * std::numbers::pi);
 }
 
@@ -99,7 +99,7 @@ std::vector<EdgeHandle> collapsingEdges(const SurfaceMesh& mesh, const Transport
         angle -= turnAcross(mesh, transport, field, in);
         out = next;
       }
-      if (!last.is_valid() || last == first || std::lround(angle / kQuarter) >= 1) continue;
+      if (!last.is_valid() || last == first || std::lround(angle / kQuarterTurn) >= 1) continue;
       const bool firstStays = straightness(mesh, first, spokes) >= straightness(mesh, last, spokes);
       dropped.push_back(mesh.edge_handle(firstStays ? last : first));
     }

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <complex>
 #include <iterator>
-#include <numbers>
 #include <optional>
 
 #include "trimquad/base/error.h"
 #include "trimquad/base/sparse_solver.h"
 #include "trimquad/field/aligned_sectors.h"
+#include "trimquad/field/angle.h"
 #include "trimquad/field/angle_solve.h"
 #include "trimquad/field/dual_weights.h"
 #include "trimquad/field/field_topology.h"
@@ -19,7 +19,6 @@ namespace trimquad {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kQuarter = std::numbers::pi / 2;
 
 /// Fields as one complex number per face, exp(4 i angle): the same for all four directions of a cross.
 /// The energy is sum of w |z_g - exp(4 i transport) z_f|^2 over edges, plus that of the guidance; steps of
@@ -173,7 +172,7 @@ void relaxAngles(const SurfaceMesh& mesh, const Transport& transport, const Cros
   constexpr double kFixed = 1e8;  // beside weights of order 1
   auto difference = transported(mesh, transport);
   for (const auto e : mesh.edges())
-    difference[e.idx()] += kQuarter * field.matching[mesh.halfedge_handle(e, 0).idx()];
+    difference[e.idx()] += kQuarterTurn * field.matching[mesh.halfedge_handle(e, 0).idx()];
   std::vector<double> weight(mesh.n_faces(), 0.0);
   for (const auto f : mesh.faces()) weight[f.idx()] = diffusion.isFixed(f) ? kFixed : diffusion.pull(f);
   AngleSolve solve(mesh);
@@ -182,7 +181,7 @@ void relaxAngles(const SurfaceMesh& mesh, const Transport& transport, const Cros
   for (const auto f : mesh.faces()) {
     const double angle = transport.angleOf(f, field.direction[f.idx()]);
     const double off = diffusion.isFixed(f) ? 0.0 : std::arg(diffusion.wish(f)) / 4 - angle;
-    rhs[f.idx()] += weight[f.idx()] * (angle + off - kQuarter * std::round(off / kQuarter));
+    rhs[f.idx()] += weight[f.idx()] * (angle + off - kQuarterTurn * std::round(off / kQuarterTurn));
   }
   const Eigen::VectorXd angle = solve.solve(rhs);
   for (const auto f : mesh.faces())

@@ -1,21 +1,18 @@
 #include "trimquad/field/field_topology.h"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "trimquad/base/error.h"
+#include "trimquad/field/angle.h"
 #include "trimquad/field/loop_turning.h"
 
 namespace trimquad {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kQuarter = kPi / 2;
-
 /// `x` in whole quarter turns, which it must be but for rounding.
 int quarters(double x) {
-  const double count = x / kQuarter;
+  const double count = x / kQuarterTurn;
   TRIMQUAD_ASSERT(std::abs(count - std::round(count)) < 0.05);
   return int(std::lround(count));
 }
@@ -36,8 +33,8 @@ void spreadSpikes(const SurfaceMesh& mesh, std::vector<double>& turn, CrossField
       if (!best) break;
       ++field.matching[best->idx()];
       --field.matching[mesh.opposite_halfedge_handle(*best).idx()];
-      turn[best->idx()] -= kQuarter;
-      turn[mesh.opposite_halfedge_handle(*best).idx()] += kQuarter;
+      turn[best->idx()] -= kQuarterTurn;
+      turn[mesh.opposite_halfedge_handle(*best).idx()] += kQuarterTurn;
       --field.index[v.idx()];
       ++field.index[mesh.from_vertex_handle(*best).idx()];
     }
@@ -54,9 +51,9 @@ void settleTopology(const SurfaceMesh& mesh, const Transport& transport, CrossFi
     const auto h = mesh.halfedge_handle(e, 0), o = mesh.halfedge_handle(e, 1);
     const double whole =
         angle[mesh.face_handle(o).idx()] - angle[mesh.face_handle(h).idx()] - transport.angle[h.idx()];
-    field.matching[h.idx()] = int(std::lround(whole / kQuarter));
+    field.matching[h.idx()] = int(std::lround(whole / kQuarterTurn));
     field.matching[o.idx()] = -field.matching[h.idx()];
-    turn[h.idx()] = whole - kQuarter * field.matching[h.idx()];
+    turn[h.idx()] = whole - kQuarterTurn * field.matching[h.idx()];
     turn[o.idx()] = -turn[h.idx()];
   }
   int total = 0;

@@ -9,8 +9,6 @@
 namespace trimquad {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Shortest paths from the vertices of loop 0 to the other loops, as a tree of loops joined one after the
 /// other.
 std::vector<std::vector<HalfedgeHandle>> joiningPaths(const SurfaceMesh& mesh,
@@ -64,7 +62,7 @@ std::vector<std::vector<HalfedgeHandle>> joiningPaths(const SurfaceMesh& mesh,
 double tangentTurn(const SurfaceMesh& mesh, const std::vector<HalfedgeHandle>& loop) {
   double turn = 0;
   for (const auto h : loop) {
-    turn += kPi;
+    turn += std::numbers::pi;
     for (const auto out : mesh.voh_range(mesh.from_vertex_handle(h)))
       if (!mesh.is_boundary(out)) turn -= cornerAngle(mesh, out);
   }
@@ -78,7 +76,7 @@ LoopTurning loopTurning(const SurfaceMesh& mesh, const Transport& transport) {
   for (const auto& loop : result.loops) {
     double turn = tangentTurn(mesh, loop);  // against the frames: exterior angles, then frames
     walkBeside(mesh, loop, [&](HalfedgeHandle h) { turn += transport.angle[h.idx()]; });
-    const double turns = turn / (2 * kPi);
+    const double turns = turn / (2 * std::numbers::pi);
     TRIMQUAD_ASSERT(std::abs(turns - std::round(turns)) < 0.1);
     result.turns.push_back(int(std::lround(turns)));
     total += result.turns.back();

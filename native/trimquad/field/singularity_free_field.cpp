@@ -7,15 +7,13 @@
 #include <numbers>
 
 #include "trimquad/base/error.h"
+#include "trimquad/field/angle.h"
 #include "trimquad/field/angle_solve.h"
 #include "trimquad/field/loop_turning.h"
 #include "trimquad/field/transport.h"
 
 namespace trimquad {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kQuarter = kPi / 2;
 
 /// One angle per face that the field should follow up to quarter turns, with a weight in [0, 1].
 struct AngleGuidance {
@@ -56,7 +54,7 @@ std::vector<int> smoothestTurning(const SurfaceMesh& mesh, const AngleSolve& sol
     unit[g] = 1;
     const auto jump = jumps(mesh, turning, unit);
     std::vector<double> difference(jump.size());
-    for (size_t e = 0; e < jump.size(); ++e) difference[e] = 2 * kPi * jump[e];
+    for (size_t e = 0; e < jump.size(); ++e) difference[e] = 2 * std::numbers::pi * jump[e];
     residuals.push_back(solve.residual(solve.solve(solve.rightHandSide(difference)), difference));
   }
   Eigen::MatrixXd gram(loops, loops);
@@ -125,7 +123,7 @@ CrossField singularityFreeField(const SurfaceMesh& mesh, const FieldGuidance& di
   auto difference = transported(mesh, frames);
   const auto wanted = smoothestTurning(mesh, solve, difference, turning);
   const auto jump = jumps(mesh, turning, generatorTurns(turning, wanted));
-  for (size_t e = 0; e < jump.size(); ++e) difference[e] += 2 * kPi * jump[e];
+  for (size_t e = 0; e < jump.size(); ++e) difference[e] += 2 * std::numbers::pi * jump[e];
   const Eigen::VectorXd smooth = solve.rightHandSide(difference);
   Eigen::VectorXd angle = solve.solve(smooth);
   progress.report(0.5);
@@ -151,7 +149,8 @@ CrossField singularityFreeField(const SurfaceMesh& mesh, const FieldGuidance& di
       Eigen::VectorXd rhs = smooth;
       for (const auto f : mesh.faces()) {
         const double off = guidance.angle[f.idx()] - angle[f.idx()];
-        rhs[f.idx()] += weight[f.idx()] * (angle[f.idx()] + off - kQuarter * std::round(off / kQuarter));
+        rhs[f.idx()] +=
+            weight[f.idx()] * (angle[f.idx()] + off - kQuarterTurn * std::round(off / kQuarterTurn));
       }
       angle = solve.solve(rhs);
       progress.report(0.7 + 0.3 * (round + 1) / kRounds);

@@ -27,7 +27,7 @@ MapTarget imageOf(const Parametrization& map) {
 }
 
 /// The seamless map in the coordinates of the basis, the grid points left at the origin.
-Eigen::VectorXd coordinatesOf(const SeamlessMap& map, const SeamBasis& basis) {
+Eigen::VectorXd seamlessCoordinates(const SeamlessMap& map, const SeamBasis& basis) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(basis.basis().variableCount());
   for (const auto h : map.mesh.halfedges()) {
     if (map.mesh.is_boundary(h)) continue;
@@ -93,7 +93,8 @@ GridMap gridMap(const SeamlessMap& seamless, const TMesh& tmesh, const Quantizat
                            basis,           "optimize"};
   const StepBudget budget =
       thorough ? StepBudget() : StepBudget::ofWork(kBriefly * double(seamless.mesh.n_faces()));
-  const Eigen::VectorXd z = solveMap(problem, coordinatesOf(seamless, basis), budget, map.counters, progress);
+  const Eigen::VectorXd z =
+      solveMap(problem, seamlessCoordinates(seamless, basis), budget, map.counters, progress);
   static_cast<Parametrization&>(map) = exactMap(seamless.mesh, basis, z, true);
   map.aligned = seamless.aligned;
   map.featurePoints = seamless.featurePoints;

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Over how many edges to each side a turn is measured.
-constexpr int kReach = 4;
+constexpr int kCornerReach = 4;
 
 double angleBetween(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -21,7 +21,7 @@ double angleBetween(const Vector3d& a, const Vector3d& b) {
 /// other end and are measured over less than half of them.
 double turn(const std::vector<Vector3d>& points, int i, bool closed) {
   const int n = int(points.size());
-  const int reach = closed ? std::min(kReach, (n - 1) / 2) : std::min({kReach, i, n - 1 - i});
+  const int reach = closed ? std::min(kCornerReach, (n - 1) / 2) : std::min({kCornerReach, i, n - 1 - i});
   double least = std::numeric_limits<double>::infinity();
   for (int k = 1; k <= std::max(1, reach); ++k) {
     const Vector3d &before = points[(i - k + n) % n], &here = points[i], &after = points[(i + k) % n];

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 /// A triangle whose area is this part of its squared sides or less has none: what rounding leaves of one with
 /// its corners on a line.
-constexpr double kNoArea = 1e-9;
+constexpr double kNoTriangle = 1e-9;
 
 double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return 0.5 * (b - a).cross(c - a).norm();
@@ -25,7 +25,7 @@ double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 
 bool hasArea(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const double sides = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-  return areaOf(a, b, c) > kNoArea * sides;
+  return areaOf(a, b, c) > kNoTriangle * sides;
 }
 
 /// The triangulation itself as a surface that asks for no shorter edges anywhere.

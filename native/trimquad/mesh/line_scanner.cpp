@@ -17,7 +17,7 @@ std::string_view withoutPlus(std::string_view text) {
 
 }  // namespace
 
-std::string quoted(std::string_view token) {
+std::string inQuotes(std::string_view token) {
   std::string text(token.substr(0, 24));
   for (char& c : text)
     if (c < ' ' || c > '~') c = '.';
@@ -79,7 +79,7 @@ double LineScanner::toNumber(std::string_view text, const char* what) const {
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
-    fail(std::string(what) + " should be a number, but is " + quoted(text));
+    fail(std::string(what) + " should be a number, but is " + inQuotes(text));
   if (error == std::errc::result_out_of_range) {
     const std::size_t exponent = digits.find_first_of("eE");
     if (exponent != std::string_view::npos && digits.substr(exponent + 1, 1) == "-") return 0;
@@ -93,7 +93,7 @@ long long LineScanner::toInteger(std::string_view text, const char* what) const 
   long long value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc{} || end != digits.data() + digits.size())
-    fail(std::string(what) + " should be a whole number, but is " + quoted(text));
+    fail(std::string(what) + " should be a whole number, but is " + inQuotes(text));
   return value;
 }
 

@@ -75,6 +75,6 @@ class LineScanner {
 };
 
 /// A token in quotes for a message, shortened, with unprintable bytes as dots.
-std::string quoted(std::string_view token);
+std::string inQuotes(std::string_view token);
 
 }  // namespace trimquad

@@ -59,7 +59,7 @@ MapFile readStatements(const MeshSource& source) {
     } else if (statement == "p") {
       file.points.push_back(numberUpTo(file.soup.points.size(), scanner.token(), scanner, "a vertex number"));
     } else if (statement != "g") {
-      scanner.fail(quoted(statement) + " is no statement of a map");
+      scanner.fail(inQuotes(statement) + " is no statement of a map");
     }
   }
   return file;

@@ -89,7 +89,7 @@ PolygonFile readObj(const MeshSource& original) {
     } else if (statement == "f" || statement == "fo") {
       readFace(scanner, file);
     } else if (std::find(std::begin(kSkipped), std::end(kSkipped), statement) == std::end(kSkipped)) {
-      scanner.fail(quoted(statement) + " is no statement of a Wavefront OBJ file");
+      scanner.fail(inQuotes(statement) + " is no statement of a Wavefront OBJ file");
     }
   }
   return file;

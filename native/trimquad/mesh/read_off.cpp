@@ -15,7 +15,7 @@ void readKeyword(LineScanner& scanner) {
   if (keyword == "4OFF" || keyword == "nOFF" || keyword == "4nOFF")
     scanner.fail("the vertices do not have three coordinates (" + std::string(whole) +
                  "); save the mesh as plain OFF");
-  if (keyword != "OFF") scanner.fail("an OFF file begins with OFF, this one with " + quoted(whole));
+  if (keyword != "OFF") scanner.fail("an OFF file begins with OFF, this one with " + inQuotes(whole));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ struct Header {
 const ScalarType* scalarType(std::string_view name, const LineScanner& scanner) {
   for (const ScalarType& type : kTypes)
     if (name == type.name || name == type.sizedName) return &type;
-  scanner.fail(quoted(name) + " is no type of PLY");
+  scanner.fail(inQuotes(name) + " is no type of PLY");
 }
 
 Encoding encoding(LineScanner& scanner) {
@@ -60,7 +60,7 @@ Encoding encoding(LineScanner& scanner) {
   if (name == "ascii") return Encoding::Ascii;
   if (name == "binary_little_endian") return Encoding::Little;
   if (name == "binary_big_endian") return Encoding::Big;
-  scanner.fail(quoted(name) + " is no encoding of PLY");
+  scanner.fail(inQuotes(name) + " is no encoding of PLY");
 }
 
 Property property(LineScanner& scanner, const std::string& element) {
@@ -120,7 +120,7 @@ Header readHeader(LineScanner& scanner) {
       auto& element = header.elements.back();
       element.properties.push_back(property(scanner, element.name));
     } else if (statement != "comment" && statement != "obj_info") {
-      scanner.fail(quoted(statement) + " is no statement of a PLY header");
+      scanner.fail(inQuotes(statement) + " is no statement of a PLY header");
     }
   }
   scanner.fail("the file is cut short: its header has no end");
@@ -132,7 +132,7 @@ class TextBody {
   explicit TextBody(LineScanner& scanner) : scanner_(scanner) {}
   void begin(const Element& element, long long index) {
     if (!scanner_.nextLine())
-      scanner_.fail("the file is cut short: element " + quoted(element.name) + " has " +
+      scanner_.fail("the file is cut short: element " + inQuotes(element.name) + " has " +
                     std::to_string(index) + " of " + std::to_string(element.count) + " lines");
   }
   void end() {

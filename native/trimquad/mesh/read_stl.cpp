@@ -54,7 +54,7 @@ class StlWords {
   }
   void expect(std::string_view word) {
     const std::string_view found = next();
-    if (!sameWord(found, word)) scanner.fail("expected " + quoted(word) + ", found " + quoted(found));
+    if (!sameWord(found, word)) scanner.fail("expected " + inQuotes(word) + ", found " + inQuotes(found));
   }
   double number(const char* what) { return scanner.toNumber(next(), what); }
 
@@ -74,7 +74,7 @@ PolygonFile readAscii(const MeshSource& source) {
         break;
       }
       if (!sameWord(word, "facet"))
-        words.scanner.fail("expected \"facet\" or \"endsolid\", found " + quoted(word));
+        words.scanner.fail("expected \"facet\" or \"endsolid\", found " + inQuotes(word));
       words.expect("normal");
       for (int k = 0; k < 3; ++k) words.number("a normal");
       words.expect("outer");

@@ -23,7 +23,7 @@ struct Corner {
   GridPosition grid;
   FixedVector at;
 };
-using Polygon = std::vector<Corner>;
+using CornerPolygon = std::vector<Corner>;
 
 class Cutter {
  public:
@@ -156,8 +156,9 @@ class Cutter {
     triangle_ = f;
     polygon_.clear();
     for (const auto h : mesh_.fh_range(f)) appendSide(h);
-    cut(polygon_, 0,
-        [&](const Polygon& strip) { cut(strip, 1, [&](const Polygon& piece) { addPiece(piece); }); });
+    cut(polygon_, 0, [&](const CornerPolygon& strip) {
+      cut(strip, 1, [&](const CornerPolygon& piece) { addPiece(piece); });
+    });
   }
 
   void appendSide(HalfedgeHandle h) {
@@ -182,7 +183,7 @@ class Cutter {
   /// the polygon in exactly two corners; walking to them from the lowest end both ways makes the whole cut
   /// linear.
   template <class Emit>
-  void cut(const Polygon& polygon, int axis, const Emit& emit) {
+  void cut(const CornerPolygon& polygon, int axis, const Emit& emit) {
     const auto less = [axis](const Corner& a, const Corner& b) { return a.grid[axis] < b.grid[axis]; };
     const auto [lowest, highest] = std::minmax_element(polygon.begin(), polygon.end(), less);
     const Quanta low = lowest->grid[axis], high = highest->grid[axis];
@@ -194,7 +195,7 @@ class Cutter {
     while (polygon[start].grid[axis] != low || polygon[(start + n - 1) % n].grid[axis] == low) ++start;
     const auto at = [&](size_t i) -> const Corner& { return polygon[(start + i) % n]; };
 
-    Polygon part, chordUp, chordBack;  // chordBack: the last chord, seen from the rest
+    CornerPolygon part, chordUp, chordBack;  // chordBack: the last chord, seen from the rest
     size_t forward = 0, backward = n;
     for (Quanta line = firstLine;; line += 2) {
       size_t f = forward, b = backward;
@@ -220,7 +221,7 @@ class Cutter {
 
   /// The grid line from corner p to corner q of the triangle's polygon, which runs along `axis`, with the
   /// grid points between them: as polygon corners on the way there, and on the way back.
-  void addChord(const Corner& p, const Corner& q, int axis, Polygon& there, Polygon& back) {
+  void addChord(const Corner& p, const Corner& q, int axis, CornerPolygon& there, CornerPolygon& back) {
     there.clear(), back.clear();
     const Quanta from = p.grid[axis], to = q.grid[axis], step = from < to ? 2 : -2;
     const int end = out_.halfedges[q.halfedge].origin;
@@ -257,7 +258,7 @@ class Cutter {
     return int(out_.points.size()) - 1;
   }
 
-  void addPiece(const Polygon& polygon) {
+  void addPiece(const CornerPolygon& polygon) {
     TRIMQUAD_ASSERT(polygon.size() >= 3);
     const int piece = int(out_.pieces.size());
     FixedVector cell = polygon[0].grid;
@@ -287,7 +288,7 @@ class Cutter {
   std::vector<EdgePoint> edgePoints_;
   std::vector<int> firstEdgePoint_, firstHalfedge_;  // by mesh edge
   FaceHandle triangle_;
-  Polygon polygon_;
+  CornerPolygon polygon_;
 };
 
 }  // namespace

@@ -8,8 +8,6 @@
 namespace trimquad {
 namespace {
 
-/// Objectives that differ by less are equal: the flow's costs are rounded.
-constexpr double kEqual = 1e-5;
 /// Every so many branches, the search goes straight down.
 constexpr int kBranchesPerDescent = 100;
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -42,7 +40,7 @@ class Search {
         mostWork_(mostWork) {}
 
   Optimum run(const LengthBounds& bounds, const DeviationFlow& flow, const Progress& progress) && {
-    if (flow.objective < bestObjective_ - kEqual)
+    if (flow.objective < bestObjective_ - Objective::kEqual)
       open_.push(std::make_shared<Branch>(Branch{bounds, flow, count_++}));
     int nextDescent = 0;
     while (!open_.empty()) {
@@ -51,12 +49,12 @@ class Search {
         open_.pop();
         continue;
       }
-      if (branch->flow.objective >= bestObjective_ - kEqual) break;
+      if (branch->flow.objective >= bestObjective_ - Objective::kEqual) break;
       if (isWorkDone()) return {best_, branch->flow.objective, false, work()};
       open_.pop();
       BranchPointer next = split(*branch, progress);
       if (count_ < nextDescent) continue;
-      while (next && !isWorkDone() && next->flow.objective < bestObjective_ - kEqual)
+      while (next && !isWorkDone() && next->flow.objective < bestObjective_ - Objective::kEqual)
         next = split(*next, progress);
       nextDescent = count_ + kBranchesPerDescent;
     }
@@ -87,7 +85,7 @@ class Search {
   void add(LengthBounds bounds, const Branch& parent) {
     auto flow = leastDeviation(cover_, bounds, parent.flow);
     ++count_;
-    if (!flow || flow->objective >= bestObjective_ - kEqual) return;
+    if (!flow || flow->objective >= bestObjective_ - Objective::kEqual) return;
     children_.push_back(std::make_shared<Branch>(Branch{std::move(bounds), std::move(*flow), count_}));
   }
 

@@ -13,8 +13,6 @@ constexpr std::size_t kFirstSize = 30;
 constexpr std::size_t kCore = 4;
 /// Branches for each arc of a neighbourhood at most.
 constexpr long long kBranchesPerArc = 3;
-/// Objectives that differ by less are equal: the flow's costs are rounded.
-constexpr double kEqual = 1e-5;
 
 class NeighbourhoodSearch {
  public:
@@ -93,11 +91,11 @@ class NeighbourhoodSearch {
     const auto flow = leastDeviation(cover_, bounds, flow_);
     TRIMQUAD_ASSERT(flow);
     const double before = cover_.objective()(q_);
-    if (flow->objective > before - kEqual) return false;
+    if (flow->objective > before - Objective::kEqual) return false;
     const long long most = std::min((long long)(size)*kBranchesPerArc * arcs, workLeft_);
     Optimum found = leastLengths(dual_, cover_, faults_, q_, bounds, *flow, most, progress);
     workLeft_ -= found.work;
-    if (cover_.objective()(found.length) > before - kEqual) return false;
+    if (cover_.objective()(found.length) > before - Objective::kEqual) return false;
     q_.swap(found.length);
     for (std::size_t a = 0; a < q_.size(); ++a)
       if (q_[a] != found.length[a])

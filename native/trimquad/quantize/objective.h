@@ -11,6 +11,8 @@ namespace trimquad {
 /// relative differences of a given arc count more the longer it is; at least as of a quarter of a quad.
 struct Objective {
   static constexpr double kShortest = 0.25;
+  /// Objectives that differ by less are equal: the costs of flows are rounded.
+  static constexpr double kEqual = 1e-5;
 
   std::vector<double> target;  ///< by arc, in quads
   std::vector<double> weight;

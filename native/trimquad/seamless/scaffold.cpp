@@ -19,7 +19,7 @@ constexpr double kFrameRoom = 1.2;
 /// Width of a collar around the outer loop, quads, and the weight of its area beside the region's: where the
 /// boundary comes close to itself, a surface has to get from one side to the other in between.
 constexpr double kCollar = 0.5, kCollarWeight = 0.1;
-constexpr int kRounds = 100, kStepsPerRound = 4;
+constexpr int kScaffoldRounds = 100, kStepsPerRound = 4;
 constexpr double kScaffoldWeight = 1e-2;  ///< of the region's energy, for the scaffold as a whole
 /// Least relative decrease of the energy in a round, and rounds in a row that may stay below it.
 constexpr double kWorthARound = 2e-3;
@@ -329,14 +329,14 @@ Eigen::VectorXd oneToOneMap(const SurfaceMesh& mesh, const SeamGraph& seams, con
                      "a convex embedding of the region is too narrow for floating point; refine the mesh");
   double previous = INFINITY;
   int stalled = 0;
-  for (int round = 0; round < kRounds && stalled < kPatience; ++round) {
+  for (int round = 0; round < kScaffoldRounds && stalled < kPatience; ++round) {
     map.remesh();
     const double energy = map.improve(follow, [&] {
       ++counters.iterations;
       progress.addWork(kWorkOnTriangle * long(mesh.n_faces()));
       progress.check();
     });
-    progress.report(0.5 + 0.5 * round / kRounds);
+    progress.report(0.5 + 0.5 * round / kScaffoldRounds);
     stalled = energy > previous * (1 - kWorthARound) ? stalled + 1 : 0;
     previous = energy;
   }

@@ -13,8 +13,8 @@ namespace {
 /// Volume of the parallelepiped of three unit normals below which their sheets are led to one point.
 constexpr double kFlat = 0.1;
 /// Poles that a sheet may come to have, by those it has; and how many more in any case.
-constexpr int kMorePoles = 2, kFewPoles = 200;
-constexpr double kFade = 1;  ///< quads over which a sheet goes back to where it was
+constexpr int kMorePolesAtCorner = 2, kFewPolesAtCorner = 200;
+constexpr double kFadeFromCorner = 1;  ///< quads over which a sheet goes back to where it was
 /// Distance of the places beside a corner that give the sheet its tangent plane, quads.
 constexpr double kBeside = 1.0 / 64;
 
@@ -96,7 +96,8 @@ std::vector<int> meetInCorners(std::vector<Sheet>& sheets, const std::vector<She
         appendMoves(sheets[meeting.use->sheet], *meeting.use, meeting.point, error, withTangents,
                     moves[meeting.use->sheet]);
       const int poles = mover.poles(sheets, body, moves);
-      if (!mover.move(sheets, body, moves, kFade, kMorePoles * poles + kFewPoles)) continue;
+      if (!mover.move(sheets, body, moves, kFadeFromCorner, kMorePolesAtCorner * poles + kFewPolesAtCorner))
+        continue;
       moved.push_back(body);
       break;
     }

@@ -10,7 +10,7 @@ namespace trimquad {
 namespace {
 
 constexpr double kSmallestVolume = 0.0025;  ///< of the parallelepiped of the unit normals
-constexpr int kMaxSteps = 30;
+constexpr int kMeetingSteps = 30;
 
 /// S0 = S1 (= S2), by Newton; two sheets are cut with the plane through `p` across their intersection.
 std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p,
@@ -24,7 +24,7 @@ std::optional<std::vector<Eigen::Vector2d>> commonPoint(const Eigen::Vector3d& p
   };
   evaluate();
   const Eigen::Vector3d along = normal(jets[0]).cross(normal(jets[1]));
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMeetingSteps; ++step) {
     const Eigen::Vector3d n2 = count == 3 ? normal(jets[2]) : along;
     const double smallest = count == 3 ? kSmallestVolume : smallestAngle * smallestAngle;
     if (std::abs(normal(jets[0]).cross(normal(jets[1])).dot(n2)) < smallest) return {};
@@ -113,7 +113,7 @@ double placeOnLine(const Eigen::Vector3d& p, const SheetLine& line, double guess
     return jet.su * line.along[0] + jet.sv * line.along[1];
   };
   double s = guess;
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMeetingSteps; ++step) {
     const auto jet = line.sheet->jet(line.at(s));
     const Eigen::Vector3d t = tangent(jet);
     const double move = (p - jet.s).dot(t) / t.squaredNorm();
@@ -123,7 +123,7 @@ double placeOnLine(const Eigen::Vector3d& p, const SheetLine& line, double guess
   if (!other) return s;
   const double nearest = s;
   Eigen::Vector2d x = other->footPoint(line.sheet->jet(line.at(s)).s, otherGuess);
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMeetingSteps; ++step) {
     const auto jet = line.sheet->jet(line.at(s)), there = other->jet(x);
     Eigen::Matrix3d m;
     m << tangent(jet), -there.su, -there.sv;

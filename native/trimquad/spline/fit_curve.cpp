@@ -13,7 +13,7 @@ namespace {
 /// them.
 constexpr int kIntervalsPerSpan = 5;
 /// Halvings of a span in a row that may bring less than half of the distance: beyond that the samples jump.
-constexpr int kPatience = 10;
+constexpr int kMaxHalvings = 10;
 
 template <int Dim>
 using Samples = std::vector<CurveSample<Dim>>;
@@ -179,7 +179,7 @@ SplineCurve<Dim> fitCurve(std::vector<CurveSample<Dim>>& samples, int degree, do
         distance = worst[k];
         halvings = 0;
       } else {
-        hopeless = hopeless || ++halvings > kPatience;
+        hopeless = hopeless || ++halvings > kMaxHalvings;
       }
       finer.push_back((breaks[k] + breaks[k + 1]) / 2);
       finerHistory.push_back(finerHistory.back());

@@ -12,8 +12,8 @@
 namespace trimquad {
 namespace {
 
-constexpr int kMaxRounds = 60;
-constexpr int kMaxPoles = 200000;
+constexpr int kRoundsOfLayout = 60;
+constexpr int kPolesOfLayout = 200000;
 /// Charts that a foot may cross on its way.
 constexpr int kMaxHops = 4;
 /// Factor of the tangents' weight at singularities for every refinement that brought little.
@@ -81,8 +81,8 @@ class LayoutFit : public FitRounds {
   LayoutFit(const Region& region, const GridMap& map, const Layout& layout, const FitOptions& options,
             const FoldSpots::Policy& folds, const Progress& progress)
       : FitRounds(region, options,
-                  {.maxRounds = kMaxRounds,
-                   .maxPoles = kMaxPoles,
+                  {.maxRounds = kRoundsOfLayout,
+                   .maxPoles = kPolesOfLayout,
                    .takesBack = true,
                    .failsAtFeet = false,
                    .several = true,

@@ -7,7 +7,7 @@ namespace trimquad {
 namespace {
 
 /// Rounds of parameter correction on halved knots.
-constexpr int kMaxCorrections = 4;
+constexpr int kMaxCorrectionsHalved = 4;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ std::optional<FittedSurface> FitRounds::closer(const FittedSurface& fitted, cons
   halveKnots(chosen);
   const double before = deviation_.rms;
   std::optional<FittedSurface> result;
-  for (corrections_ = 0; corrections_ <= kMaxCorrections; correct()) {
+  for (corrections_ = 0; corrections_ <= kMaxCorrectionsHalved; correct()) {
     auto surfaces = partOfLeastSquares(dataOf(samples_, emphasis_), chosen, result_.surfaces);
     if (!surfaces) break;
     result_.surfaces = std::move(*surfaces);

@@ -14,8 +14,8 @@
 namespace trimquad {
 namespace {
 
-constexpr int kMaxRounds = 100;
-constexpr int kMaxPoles = 100000;
+constexpr int kRoundsOfSurface = 100;
+constexpr int kPolesOfSurface = 100000;
 
 /// u of the line at which a closed chart is cut: a whole quad, where the line crosses the region in the
 /// fewest pieces; the middle of the longest row of such lines, for the fit moves the boundary a little.
@@ -92,8 +92,8 @@ class SurfaceFit : public FitRounds {
   SurfaceFit(const Region& region, const GridMap& map, const FitOptions& options, const Chart& chart,
              double seam, const Progress& progress)
       : FitRounds(region, options,
-                  {.maxRounds = kMaxRounds,
-                   .maxPoles = kMaxPoles,
+                  {.maxRounds = kRoundsOfSurface,
+                   .maxPoles = kPolesOfSurface,
                    .takesBack = false,
                    .failsAtFeet = true,
                    .several = false},

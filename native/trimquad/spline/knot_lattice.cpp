@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMostParts = 64;  ///< of a segment
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double doubledArea(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
@@ -36,7 +36,7 @@ std::vector<LatticePoint> latticePoints(const SplineSpace& space,
                                         const std::array<Eigen::Vector2d, 3>& triangle, int across) {
   const Eigen::Vector2d low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]),
                         high = triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]);
-  const double area = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  const double area = doubledArea(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   std::vector<LatticePoint> result;
   if (!(area > 0)) return result;
   const auto columns = latticeLines(space.u, low[0], high[0], across);
@@ -45,7 +45,7 @@ std::vector<LatticePoint> latticePoints(const SplineSpace& space,
       const Eigen::Vector2d x(column.at, row.at);
       Eigen::Vector3d b;
       for (int k = 0; k < 3; ++k)
-        b[k] = cross(triangle[(k + 2) % 3] - triangle[(k + 1) % 3], x - triangle[(k + 1) % 3]) / area;
+        b[k] = doubledArea(triangle[(k + 2) % 3] - triangle[(k + 1) % 3], x - triangle[(k + 1) % 3]) / area;
       if (b.minCoeff() < 0) continue;
       result.push_back({{column.index, row.index}, b, column.width * row.width});
     }

@@ -16,9 +16,9 @@ namespace {
 constexpr double kPlate = 1e-9;
 /// The same of what joins charts, which the plate must not drown in.
 constexpr double kExact = 1;
-constexpr int kMaxRounds = 12;
+constexpr int kRoundsOfMove = 12;
 /// A direction of the parameter plane takes part in a curve's if it has this much of the other's share.
-constexpr double kTakesPart = 0.3;
+constexpr double kAxisTakesPart = 0.3;
 /// What may be left of the moves where they cannot be followed, by the largest; and by how much less there
 /// has to be for more poles.
 constexpr double kWorthWhile = 0.1, kWorthMorePoles = 0.7;
@@ -80,7 +80,7 @@ bool refine(Spaces& spaces, const std::vector<ChartMove>& missed) {
     const SplineLine* lines[] = {&spaces.chart(chart).u, &spaces.chart(chart).v};
     for (const int axis : {0, 1}) {
       const int span = lines[axis]->spanOf(move.at[axis]);
-      if (share[axis] >= kTakesPart * share[1 - axis] &&
+      if (share[axis] >= kAxisTakesPart * share[1 - axis] &&
           lines[axis]->width(span) >= 2 * (move.firm ? kNarrowestFirm : kNarrowest))
         spans[chart][axis].push_back(span);
     }
@@ -164,7 +164,7 @@ std::optional<std::map<int, SplineSurface>> wayOf(Spaces& spaces, const std::vec
   left *= kWorthWhile;
   std::optional<std::map<int, SplineSurface>> best;
   std::vector<double> more(moves.size(), 1);  // by move: its weight, by that given
-  for (int round = 0; round < kMaxRounds && spaces.poles() <= maxPoles; ++round) {
+  for (int round = 0; round < kRoundsOfMove && spaces.poles() <= maxPoles; ++round) {
     std::vector<std::vector<Datum>> data(count);
     for (std::size_t i = 0; i < moves.size(); ++i) {
       const auto& [chart, move] = moves[i];

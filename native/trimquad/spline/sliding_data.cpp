@@ -6,7 +6,7 @@ namespace {
 /// Part of the squared distance along the free directions that counts: it bounds how far data slide in one
 /// round, and makes the problem definite.
 constexpr double kSlidingCounts = 0.03;
-constexpr int kMaxSteps = 60;
+constexpr int kSlidingSteps = 60;
 /// Part of the first residual's norm (that of the inverse of the preconditioner) that is left: the next round
 /// linearises anew.
 constexpr double kResidualLeft = 1e-3;
@@ -50,7 +50,7 @@ Eigen::MatrixXd SlidingData::minimum(Eigen::MatrixXd x,
   Eigen::MatrixXd wholeP = r;  // the whole distances' matrix times p
   double size = product(r, z);
   const double enough = kResidualLeft * kResidualLeft * size;
-  for (int step = 0; step < kMaxSteps && size > enough; ++step) {
+  for (int step = 0; step < kSlidingSteps && size > enough; ++step) {
     progress.check();
     const Eigen::MatrixXd q = wholeP - lost(p, false);
     const double by = size / product(p, q);

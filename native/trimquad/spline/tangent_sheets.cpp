@@ -14,7 +14,7 @@ namespace trimquad {
 namespace {
 
 /// Poles that a sheet may come to have, by those it has; and how many more in any case.
-constexpr int kMorePoles = 6, kFewPoles = 2000;
+constexpr int kMorePolesAlongCurve = 6, kFewPolesAlongCurve = 2000;
 /// Weight of the lines beside a curve, which give the sheets the same tangents there, and beyond its ends:
 /// where the sheets' curvatures differ, or several meet, they cannot agree exactly.
 constexpr double kBesideWeight = 0.01;
@@ -367,7 +367,7 @@ class SheetJoiner {
         if (turning != Turning::ToFold && !toCurve) continue;
         const SheetMoves moves = movesOf(k, turning);
         if (moves.empty()) return {};
-        const int most = kMorePoles * mover_.poles(fitted_, k, moves) + kFewPoles;
+        const int most = kMorePolesAlongCurve * mover_.poles(fitted_, k, moves) + kFewPolesAlongCurve;
         if (!mover_.move(sheets_, k, moves, toCurve ? kFadeFromCurve : kFade, most, lastResort)) continue;
         return {true, toCurve && turning != Turning::None, false};
       }

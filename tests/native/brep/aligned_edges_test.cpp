@@ -28,7 +28,7 @@ using Eigen::Vector3d;
 using Node = FeatureGraph::Node;
 using Sharp = FeatureOptions::Sharp;
 
-Model tessellated(const TopoDS_Shape& shape, FeatureOptions features, double edgeLength = 0.3) {
+Model tessellatedWith(const TopoDS_Shape& shape, FeatureOptions features, double edgeLength = 0.3) {
   features.quadLength = 3 * edgeLength;
   return tessellate(Shape(shape), {edgeLength, 0.02, features}, Progress());
 }
@@ -59,7 +59,7 @@ void expectPrepared(const Region& region) {
 }
 
 TEST(AlignedCadEdges, aBoxIsOneClosedRegionWithTwelveCurves) {
-  const Model model = tessellated(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), {.sharp = Sharp::Align});
+  const Model model = tessellatedWith(BRepPrimAPI_MakeBox(1, 2, 3).Shape(), {.sharp = Sharp::Align});
   ASSERT_EQ(model.regions.size(), 1u);
   ASSERT_EQ(model.shells.size(), 1u);
   EXPECT_EQ(model.shells[0].regions, std::vector<int>{0});
@@ -75,7 +75,7 @@ TEST(AlignedCadEdges, aBoxIsOneClosedRegionWithTwelveCurves) {
 }
 
 TEST(AlignedCadEdges, aCylinderHasTwoClosedCurves) {
-  const Model model = tessellated(BRepPrimAPI_MakeCylinder(1, 2).Shape(), {.sharp = Sharp::Align});
+  const Model model = tessellatedWith(BRepPrimAPI_MakeCylinder(1, 2).Shape(), {.sharp = Sharp::Align});
   ASSERT_EQ(model.regions.size(), 1u);
   const Region& region = model.regions[0];
   EXPECT_EQ(eulerCharacteristic(region.mesh), 2);
@@ -89,7 +89,7 @@ TEST(AlignedCadEdges, aSmoothEdgeCanBeChosen) {
   const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(1, 2).Shape();
   int seams = 0;
   for (const char* name : {"Edge1", "Edge2", "Edge3"}) {
-    const Model model = tessellated(cylinder, {.sharp = Sharp::Ignore, .align = {name}});
+    const Model model = tessellatedWith(cylinder, {.sharp = Sharp::Ignore, .align = {name}});
     ASSERT_EQ(model.regions.size(), 1u);
     const Region& region = model.regions[0];
     EXPECT_EQ(eulerCharacteristic(region.mesh), 2);
@@ -106,8 +106,8 @@ TEST(AlignedCadEdges, aSmoothEdgeCanBeChosen) {
 
 TEST(AlignedCadEdges, inTrimModeChosenEdgesStayInsideAndBoundariesCanBeAligned) {
   const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(1, 2).Shape();
-  const Model plain = tessellated(cylinder, {.sharp = Sharp::Trim});
-  const Model model = tessellated(
+  const Model plain = tessellatedWith(cylinder, {.sharp = Sharp::Trim});
+  const Model model = tessellatedWith(
       cylinder, {.sharp = Sharp::Trim, .alignBoundary = true, .align = {"Edge1", "Edge2", "Edge3"}});
   ASSERT_EQ(model.regions.size(), plain.regions.size());
   EXPECT_EQ(model.curves.size(), plain.curves.size());
@@ -121,9 +121,10 @@ TEST(AlignedCadEdges, inTrimModeChosenEdgesStayInsideAndBoundariesCanBeAligned) 
 
 TEST(AlignedCadEdges, aFreedEdgeIsNoLongerAligned) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
-  const Model model = tessellated(box, {.sharp = Sharp::Align, .free = {"Edge1", "Edge2"}});
+  const Model model = tessellatedWith(box, {.sharp = Sharp::Align, .free = {"Edge1", "Edge2"}});
   EXPECT_NEAR(alignedLength(model.regions.at(0)), 10, 1e-9);
-  const Model trimmed = tessellated(box, {.sharp = Sharp::Trim, .alignBoundary = true, .free = {"Edge3"}});
+  const Model trimmed =
+      tessellatedWith(box, {.sharp = Sharp::Trim, .alignBoundary = true, .free = {"Edge3"}});
   ASSERT_EQ(trimmed.regions.size(), 6u);
   double length = 0;
   for (const auto& region : trimmed.regions) length += alignedLength(region);
@@ -133,18 +134,18 @@ TEST(AlignedCadEdges, aFreedEdgeIsNoLongerAligned) {
 TEST(AlignedCadEdges, namesThatAreNotThereAreRefused) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
   for (const char* name : {"Edge13", "Edge0", "edge1", "Edge", "Edge1x", "Face1", ""}) {
-    const auto error = errorOf([&] { tessellated(box, {.align = {name}}); });
+    const auto error = errorOf([&] { tessellatedWith(box, {.align = {name}}); });
     ASSERT_TRUE(error) << name;
     EXPECT_EQ(error->kind(), Error::Kind::Input);
     EXPECT_EQ(error->stage(), "options");
     EXPECT_NE(error->message().find("Edge12"), std::string::npos);
   }
-  EXPECT_TRUE(errorOf([&] { tessellated(box, {.vertices = {"Vertex9"}}); }));
+  EXPECT_TRUE(errorOf([&] { tessellatedWith(box, {.vertices = {"Vertex9"}}); }));
   // A pole of a sphere has an edge without length.
   const TopoDS_Shape sphere = BRepPrimAPI_MakeSphere(1).Shape();
   int refused = 0;
   for (const char* name : {"Edge1", "Edge2", "Edge3"})
-    refused += errorOf([&] { tessellated(sphere, {.align = {name}}); }).has_value();
+    refused += errorOf([&] { tessellatedWith(sphere, {.align = {name}}); }).has_value();
   EXPECT_EQ(refused, 2);
 }
 
@@ -153,7 +154,7 @@ TEST(CadFeaturePoints, verticesAndPointsBecomeVerticesWhereverTheyLie) {
   const std::vector<Vector3d> wanted{{0.83, 1.11, 2}, {2, 0.5, 0.77}, {2, 2, 0.61},
                                      {0, 0, 2},       {1.2, 0, 0},    {1.3, 0, 0}};
   for (const Sharp sharp : {Sharp::Trim, Sharp::Align, Sharp::Ignore}) {
-    const Model model = tessellated(box, {.sharp = sharp, .vertices = {"Vertex2"}, .points = wanted});
+    const Model model = tessellatedWith(box, {.sharp = sharp, .vertices = {"Vertex2"}, .points = wanted});
     std::vector<int> found(wanted.size(), 0);
     std::size_t all = 0;
     for (const auto& region : model.regions) {
@@ -172,7 +173,7 @@ TEST(CadFeaturePoints, verticesAndPointsBecomeVerticesWhereverTheyLie) {
 
 TEST(CadFeaturePoints, aPointInSpaceIsRefused) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(2, 2, 2).Shape();
-  const auto error = errorOf([&] { tessellated(box, {.points = {{1, 1, 1}}}); });
+  const auto error = errorOf([&] { tessellatedWith(box, {.points = {{1, 1, 1}}}); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->kind(), Error::Kind::Input);
 }
@@ -196,7 +197,7 @@ TopoDS_Shape foldedFan() {
 
 TEST(AlignedEdges, sharpEdgesThatSeparateNothingAreAligned) {
   for (const auto sharp : {Sharp::Trim, Sharp::Align, Sharp::Ignore}) {
-    const Model model = tessellated(foldedFan(), {.sharp = sharp}, 0.1);
+    const Model model = tessellatedWith(foldedFan(), {.sharp = sharp}, 0.1);
     ASSERT_EQ(model.regions.size(), 1u);
     EXPECT_NEAR(alignedLength(model.regions[0]), sharp == Sharp::Ignore ? 0 : std::hypot(1, 0.9), 1e-6);
   }

@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-const Progress progress;
+const Progress unwatched;
 
 FaceChecks checksOf() {
   return FaceChecks(TRIMQUAD_CHECKER);
@@ -37,44 +37,44 @@ TEST(FaceChecks, facesThatCrossAreFoundWhereverTheyAre) {
   const std::vector<std::string> none;
   ASSERT_NE(model.faces[0].region, model.faces[1].region);
   for (const auto& folded : {std::vector<int>{}, {0}, {1}})
-    for (const auto& faults : checksOf().faults(model, folded, 2, progress)) EXPECT_NE(faults, none);
+    for (const auto& faults : checksOf().faults(model, folded, 2, unwatched)) EXPECT_NE(faults, none);
   // Also such as are bent against each other, which are looked at before the others.
   model.faces[1].region = model.faces[0].region;
-  for (const auto& faults : checksOf().faults(model, {}, 1, progress)) EXPECT_NE(faults, none);
+  for (const auto& faults : checksOf().faults(model, {}, 1, unwatched)) EXPECT_NE(faults, none);
 }
 
 TEST(FaceChecks, bodiesMayCrossEachOther) {
   auto model = spikedFaces();
   model.shells = {{{0}, {}, 0}, {{1}, {}, 1}};
-  EXPECT_EQ(checksOf().faults(model, {}, 1, progress), Faults(2));
+  EXPECT_EQ(checksOf().faults(model, {}, 1, unwatched), Faults(2));
   // Two shells of one solid may not.
   model.shells[1].body = 0;
-  EXPECT_NE(checksOf().faults(model, {}, 1, progress), Faults(2));
+  EXPECT_NE(checksOf().faults(model, {}, 1, unwatched), Faults(2));
 }
 
 TEST(FaceChecks, theFileOfTheModelIsCheckedAsAWhole) {
   auto model = bulgedBox(0.8).trim();
-  EXPECT_EQ(checksOf().faultsOfWhole(model, progress), std::vector<std::string>{});
+  EXPECT_EQ(checksOf().faultsOfWhole(model, unwatched), std::vector<std::string>{});
   for (auto& pole : model.edges[0].curve.poles) pole[2] += 1e-2;
-  EXPECT_NE(checksOf().faultsOfWhole(model, progress), std::vector<std::string>{});
+  EXPECT_NE(checksOf().faultsOfWhole(model, unwatched), std::vector<std::string>{});
 }
 
 TEST(FaceChecks, findAgainWhatIsStillThereAndWhatIsNew) {
   auto model = bulgedBox(0.8).trim();
   auto checks = checksOf();
   const Faults none(model.faces.size());
-  EXPECT_EQ(checks.faults(model, {}, 2, progress), none);
+  EXPECT_EQ(checks.faults(model, {}, 2, unwatched), none);
   auto bent = model;
   for (auto& pole : bent.edges[0].curve.poles) pole[2] += 1e-2;
-  const Faults found = checks.faults(bent, {}, 2, progress);
+  const Faults found = checks.faults(bent, {}, 2, unwatched);
   EXPECT_NE(found, none);
-  EXPECT_EQ(checks.faults(bent, {}, 1, progress), found);
-  EXPECT_EQ(checksOf().faults(bent, {}, 1, progress), found);
-  EXPECT_EQ(checks.faults(model, {}, 1, progress), none);
+  EXPECT_EQ(checks.faults(bent, {}, 1, unwatched), found);
+  EXPECT_EQ(checksOf().faults(bent, {}, 1, unwatched), found);
+  EXPECT_EQ(checks.faults(model, {}, 1, unwatched), none);
   // The vertices count as well.
   auto loose = model;
   loose.vertices[0].point[0] += 1e-2;
-  EXPECT_NE(checks.faults(loose, {}, 1, progress), none);
+  EXPECT_NE(checks.faults(loose, {}, 1, unwatched), none);
 }
 
 }  // namespace

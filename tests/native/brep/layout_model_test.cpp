@@ -55,7 +55,7 @@ double largestEdgeTolerance(const Shape& shape) {
   return tolerance;
 }
 
-double volume(const Shape& shape) {
+double volumeOf(const Shape& shape) {
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shape.topology(), properties, 1e-6);
   return properties.Mass();
@@ -111,7 +111,7 @@ TEST(LayoutModel, aSphereOfSixSquaresIsASmoothSolid) {
   EXPECT_EQ(built.spline.vertices.size(), 8u);
   EXPECT_LE(largestCrease(built.fitted[0]), 0.2);
   EXPECT_TRUE(built.spline.shells.at(0).solid.has_value());
-  EXPECT_NEAR(volume(expectSound(built.spline)), 4000 * std::numbers::pi / 3, 2);
+  EXPECT_NEAR(volumeOf(expectSound(built.spline)), 4000 * std::numbers::pi / 3, 2);
 }
 
 TEST(LayoutModel, aTorusIsASmoothSolid) {
@@ -120,7 +120,7 @@ TEST(LayoutModel, aTorusIsASmoothSolid) {
   const auto built = build(model, {sample::mapOn(model.regions[0], map)}, 0.05);
   EXPECT_EQ(built.spline.faces.size(), 4u);
   EXPECT_LE(largestCrease(built.fitted[0]), 1e-3);
-  EXPECT_NEAR(volume(expectSound(built.spline)), 2 * 3 * std::numbers::pi * std::numbers::pi, 3);
+  EXPECT_NEAR(volumeOf(expectSound(built.spline)), 2 * 3 * std::numbers::pi * std::numbers::pi, 3);
 }
 
 /// A ring of eight boxes with its corners rounded off by smoothing.
@@ -149,7 +149,7 @@ TEST(LayoutModel, aRoundedRingOfBoxesIsASolid) {
   EXPECT_LE(built.spline.faces.size(), 24u);
   EXPECT_LE(largestCrease(built.fitted[0]), 10);
   EXPECT_TRUE(built.spline.shells.at(0).solid.has_value());
-  EXPECT_GT(volume(expectSound(built.spline)), 5);
+  EXPECT_GT(volumeOf(expectSound(built.spline)), 5);
 }
 
 Eigen::Vector3d vaulted(const Eigen::Vector3d& p) {

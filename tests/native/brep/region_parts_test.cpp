@@ -65,8 +65,9 @@ TopoDS_Shape leadingEdge(double radius) {
   return sewing.SewedShape();
 }
 
-Model tessellated(const TopoDS_Shape& shape, FeatureOptions features = {.sharp = FeatureOptions::Sharp::Trim},
-                  double tolerance = 0.01) {
+Model tessellatedWhole(const TopoDS_Shape& shape,
+                       FeatureOptions features = {.sharp = FeatureOptions::Sharp::Trim},
+                       double tolerance = 0.01) {
   features.quadLength = 0.9;
   return tessellate(Shape(shape), {0.3, tolerance, features}, Progress());
 }
@@ -119,7 +120,7 @@ Model cutAt(const Model& model, int region, const std::optional<Vector3d>& place
 }
 
 TEST(RegionParts, shareTheirBordersExactly) {
-  const Model whole = tessellated(roundedBox());
+  const Model whole = tessellatedWhole(roundedBox());
   ASSERT_EQ(whole.regions.size(), 3u);
   const Model model = cutAt(whole, side(whole), {});
   ASSERT_EQ(model.regions.size(), 10u);
@@ -133,7 +134,7 @@ TEST(RegionParts, shareTheirBordersExactly) {
 }
 
 TEST(RegionParts, aPlaceCutsOutTheFaceThere) {
-  const Model whole = tessellated(roundedBox());
+  const Model whole = tessellatedWhole(roundedBox());
   const int cut = side(whole);
   const auto parts = regionParts(
       whole, cut, {.point = Vector3d(0.5 - 0.5 / std::sqrt(2), 0.5 - 0.5 / std::sqrt(2), 1)}, Progress());
@@ -150,7 +151,7 @@ TEST(RegionParts, aPlaceCutsOutTheFaceThere) {
 TEST(RegionParts, creasesAreWhereTheSurfaceBendsWithinAnEdge) {
   for (const bool sharp : {true, false}) {
     const Model whole =
-        tessellated(leadingEdge(sharp ? 0.002 : 0.2), {.sharp = FeatureOptions::Sharp::Trim}, 0.04);
+        tessellatedWhole(leadingEdge(sharp ? 0.002 : 0.2), {.sharp = FeatureOptions::Sharp::Trim}, 0.04);
     ASSERT_EQ(whole.regions.size(), 1u);
     EXPECT_TRUE(whole.regions[0].aligned.empty());
     const auto parts = regionParts(whole, 0, {.creases = true}, Progress());
@@ -170,7 +171,7 @@ TEST(RegionParts, creasesAreWhereTheSurfaceBendsWithinAnEdge) {
 
 TEST(RegionParts, trianglesBesideCreasesAreNoSlivers) {
   // At the tip the radius is below the tolerance, and far below the length of edges.
-  const Model whole = tessellated(leadingEdge(0.002));
+  const Model whole = tessellatedWhole(leadingEdge(0.002));
   ASSERT_EQ(whole.regions.size(), 1u);
   const auto& mesh = whole.regions[0].mesh;
   double worst = 1, onTip = 0;
@@ -192,7 +193,7 @@ TEST(RegionParts, trianglesBesideCreasesAreNoSlivers) {
 }
 
 TEST(RegionParts, touchTheirNeighbours) {
-  const Model whole = tessellated(roundedBox());
+  const Model whole = tessellatedWhole(roundedBox());
   EXPECT_EQ(touchingRegions(whole, side(whole)), (std::vector<int>{0, 1, 2}));
   const Model model = cutAt(whole, side(whole), {});
   // Of eight parts in a ring, each touches the next ones, top and bottom.
@@ -200,7 +201,7 @@ TEST(RegionParts, touchTheirNeighbours) {
 }
 
 TEST(RegionParts, canBeCutAgain) {
-  const Model whole = tessellated(roundedBox());
+  const Model whole = tessellatedWhole(roundedBox());
   const int cut = side(whole);
   const Model once = cutAt(whole, cut, Vector3d(2, 0, 1));
   ASSERT_EQ(once.regions.size(), 4u);
@@ -214,7 +215,7 @@ TEST(RegionParts, canBeCutAgain) {
 
 TEST(RegionParts, severalRegionsAreCutAtOnce) {
   const TopoDS_Shape cylinder = BRepPrimAPI_MakeCylinder(1, 2).Shape();
-  const Model first = tessellated(roundedBox()), second = tessellated(cylinder);
+  const Model first = tessellatedWhole(roundedBox()), second = tessellatedWhole(cylinder);
   for (const Model* whole : {&first, &second}) {
     std::map<int, RegionParts> cuts;
     for (int r = 0; r < int(whole->regions.size()); ++r)
@@ -227,7 +228,7 @@ TEST(RegionParts, severalRegionsAreCutAtOnce) {
 }
 
 TEST(RegionParts, aFaceOfItsOwnOpensAlongItsSeam) {
-  const Model whole = tessellated(BRepPrimAPI_MakeCylinder(1, 2).Shape());
+  const Model whole = tessellatedWhole(BRepPrimAPI_MakeCylinder(1, 2).Shape());
   const int cut = side(whole);
   ASSERT_EQ(eulerCharacteristic(whole.regions[cut].mesh), 0);
   const Model model = cutAt(whole, cut, Vector3d(0, 1, 1));
@@ -240,7 +241,7 @@ TEST(RegionParts, aFaceOfItsOwnOpensAlongItsSeam) {
 TEST(RegionParts, keepFeaturePointsAndAlignedEdges) {
   FeatureOptions features{.sharp = FeatureOptions::Sharp::Trim, .alignBoundary = true};
   features.points = {Vector3d(2, 0, 1), Vector3d(2, 0, 2)};
-  const Model whole = tessellated(roundedBox(), features);
+  const Model whole = tessellatedWhole(roundedBox(), features);
   const Model model = cutAt(whole, side(whole), {});
   expectWatertight(model);
   std::set<std::array<double, 3>> places;

@@ -11,7 +11,7 @@
 namespace trimquad {
 namespace {
 
-CrossField fieldOf(const Region& r) {
+CrossField smoothField(const Region& r) {
   return singularityFreeField(r.mesh, curvatureGuidance(r, Progress()), 4, Progress());
 }
 
@@ -66,7 +66,7 @@ TEST(SingularityFreeField, turnsAroundEachLoopAsOftenAsItSays) {
     std::shuffle(soup.triangles.begin(), soup.triangles.end(), random);
     for (auto& t : soup.triangles) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
     const Region r = sample::region(soup);
-    const CrossField field = fieldOf(r);
+    const CrossField field = smoothField(r);
     const auto loops = boundaryLoops(r.mesh);
     for (size_t l = 0; l < loops.size(); ++l)
       EXPECT_EQ(4 * turnsAgainst(r, field, loops[l]), field.loopTurns[l]);
@@ -76,7 +76,7 @@ TEST(SingularityFreeField, turnsAroundEachLoopAsOftenAsItSays) {
 
 TEST(SingularityFreeField, isUnitAndTangentialAndSmoothOnAWavySheet) {
   const Region r = sample::region(sample::sheet(30, 30, sample::wavy));
-  const CrossField field = fieldOf(r);
+  const CrossField field = smoothField(r);
   for (const auto f : r.mesh.faces()) {
     EXPECT_NEAR(field.direction[f.idx()].norm(), 1, 1e-12);
     EXPECT_NEAR(field.direction[f.idx()].dot(r.mesh.calc_face_normal(f)), 0, 1e-9);
@@ -94,14 +94,14 @@ TEST(SingularityFreeField, turnsOnceAroundAHoleInThePlane) {
   const Region r = sample::region(sample::sheet(20, 20, sample::flat, [](double s, double t) {
     return std::hypot(s - 0.3, t - 0.3) > 0.15 && std::hypot(s - 0.7, t - 0.6) > 0.2;
   }));
-  const CrossField field = fieldOf(r);
+  const CrossField field = smoothField(r);
   EXPECT_EQ(sortedTurns(field), (std::vector<int>{-4, -4, 4}));
   for (const auto& d : field.direction) EXPECT_GT(std::abs(d.dot(field.direction[0])), 1 - 1e-9);
 }
 
 TEST(SingularityFreeField, followsTheAxisOfATube) {
   const Region r = sample::region(sample::tube(24, 20, sample::cylinder));
-  const CrossField field = fieldOf(r);
+  const CrossField field = smoothField(r);
   EXPECT_EQ(sortedTurns(field), (std::vector<int>{0, 0}));
   for (const auto& d : field.direction) {
     const double along = std::abs(d.z());
@@ -112,7 +112,7 @@ TEST(SingularityFreeField, followsTheAxisOfATube) {
 TEST(SingularityFreeField, tubeWithAHoleHasTwoEnds) {
   const Region r = sample::region(sample::tube(
       30, 20, sample::elbow, [](double s, double t) { return std::hypot(s - 0.5, t - 0.5) > 0.15; }));
-  EXPECT_EQ(sortedTurns(fieldOf(r)), (std::vector<int>{-4, 0, 0}));
+  EXPECT_EQ(sortedTurns(smoothField(r)), (std::vector<int>{-4, 0, 0}));
 }
 
 TEST(SingularityFreeField, followsPrincipalCurvatureOfASaddle) {
@@ -121,7 +121,7 @@ TEST(SingularityFreeField, followsPrincipalCurvatureOfASaddle) {
     const double x = s - 0.5, y = t - 0.5;
     return Eigen::Vector3d(x, y, x * x - y * y);
   }));
-  const CrossField field = fieldOf(r);
+  const CrossField field = smoothField(r);
   for (const auto f : r.mesh.faces()) {
     if (r.mesh.calc_face_centroid(f).norm() > 0.1) continue;
     const auto& d = field.direction[f.idx()];
@@ -145,7 +145,7 @@ TEST(SingularityFreeField, isTheSameForARotatedSurface) {
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   for (auto& p : turned.points) p = 1e3 * (rotation * p) + Eigen::Vector3d(5, 6, 7);
-  const auto a = fieldOf(sample::region(soup)), b = fieldOf(sample::region(turned));
+  const auto a = smoothField(sample::region(soup)), b = smoothField(sample::region(turned));
   for (size_t f = 0; f < a.direction.size(); ++f)
     EXPECT_NEAR((rotation * a.direction[f] - b.direction[f]).norm(), 0, 1e-4);
 }

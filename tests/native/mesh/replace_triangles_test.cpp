@@ -11,8 +11,8 @@ using namespace trimquad;
 namespace {
 
 /// A sheet with a hole.
-SurfaceMesh pierced() {
-  TriangleSoup soup = sheet(6, 5, [](double i, double j) { return Eigen::Vector3d(i, j, 0); });
+SurfaceMesh piercedSheet() {
+  TriangleSoup soup = trimquad::sheet(6, 5, [](double i, double j) { return Eigen::Vector3d(i, j, 0); });
   std::erase_if(soup.triangles, [&](const auto& t) { return t[0] == 14; });
   return buildSurfaceMesh(soup);
 }
@@ -91,7 +91,7 @@ TEST(ReplaceTriangles, givesTheMeshOfThePartsAndLeavesAllElseAsItIs) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    const SurfaceMesh before = pierced();
+    const SurfaceMesh before = piercedSheet();
     SurfaceMesh mesh = before;
     std::map<EdgeHandle, VertexHandle> middle;
     std::vector<EdgeHandle> cut;

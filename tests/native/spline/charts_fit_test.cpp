@@ -18,22 +18,10 @@ namespace {
 
 using namespace test;
 
-Eigen::Vector3d wave(double x, double y) {
-  return {std::sin(x) * std::cos(y), std::cos(x) * std::cos(y), -std::sin(x) * std::sin(y)};
-}
-
 /// z = sin x cos y on [-3, 3]^2, `quads` quads along a side with half a quad of room around, 100 x 100
 /// points.
-AnalyticRegion wavySheet(double quads) {
-  AnalyticRegion sheet;
-  sheet.columns = sheet.rows = 99;
-  sheet.firstU = sheet.firstV = 0.5;
-  sheet.lastU = sheet.lastV = 0.5 + quads;
-  sheet.point = [=](double u, double v) {
-    const double x = 6 * (u - 0.5) / quads - 3, y = 6 * (v - 0.5) / quads - 3;
-    return Eigen::Vector3d(x, y, wave(x, y).x());
-  };
-  sheet.surface = std::make_shared<GraphSurface>(wave);
+AnalyticRegion builtWavySheet(double quads) {
+  AnalyticRegion sheet = wavySheet(0.5, 0.5 + quads, quads / 6);
   sheet.build();
   return sheet;
 }
@@ -42,7 +30,7 @@ AnalyticRegion wavySheet(double quads) {
 /// is 360 poles for 3e-4. Here intervals are halved from two along each chart on, which brings the deviation
 /// from 1.1e-3 to 6.7e-5 at once; for what they reach, the poles are as few.
 TEST(ChartsFit, wavySheetOfFiveChartsWithStaggeredTJoints) {
-  const auto sheet = wavySheet(31);
+  const auto sheet = builtWavySheet(31);
   struct Goal {
     double tolerance;
     std::size_t poles;
@@ -70,7 +58,7 @@ TEST(ChartsFit, wavySheetOfFiveChartsWithStaggeredTJoints) {
 
 /// The line crosses three charts, and the moves are as large on both sides of their borders.
 TEST(ChartsFit, surfacesThatMoveStayJoined) {
-  const auto sheet = wavySheet(31);
+  const auto sheet = builtWavySheet(31);
   const auto fitted = fitSurface(sheet.region, sheet.map,
                                  {.tolerance = 3e-4, .bisections = {{0}, {0}, {2}, {2}}}, Progress());
   ASSERT_EQ(fitted.surfaces.size(), 5u);
@@ -106,7 +94,7 @@ TEST(ChartsFit, surfacesThatMoveStayJoined) {
 }
 
 TEST(ChartsFit, surfacesThatStayFarFromNoiseGiveUpBeforeTheyFollowIt) {
-  auto sheet = wavySheet(31);
+  auto sheet = builtWavySheet(31);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> noise(-0.03, 0.03);
   sheet.surface = nullptr;
@@ -127,7 +115,7 @@ TEST(ChartsFit, surfacesThatStayFarFromNoiseGiveUpBeforeTheyFollowIt) {
 }
 
 TEST(ChartsFit, aNarrowBumpIsReachedThoughTheFirstKnotsBringLittle) {
-  auto sheet = wavySheet(31);
+  auto sheet = builtWavySheet(31);
   sheet.surface = nullptr;
   sheet.columns = sheet.rows = 199;
   sheet.point = [](double u, double v) -> Eigen::Vector3d {
@@ -156,7 +144,7 @@ double bending(const SplineSurface& s) {
 }
 
 TEST(ChartsFit, chosenChartsComeOutSmootherWithinTheTolerance) {
-  const auto sheet = wavySheet(31);
+  const auto sheet = builtWavySheet(31);
   const FitOptions options{.tolerance = 3e-3, .enough = 1e-2, .bisections = {{0}, {0}, {2}, {2}}};
   const auto plain = fitSurface(sheet.region, sheet.map, options, Progress());
   const auto found = smoothedCharts(plain, {{1, 4}}, sheet.region, sheet.map, options, Progress());
@@ -170,7 +158,7 @@ TEST(ChartsFit, chosenChartsComeOutSmootherWithinTheTolerance) {
 }
 
 TEST(ChartsFit, chosenChartsComeCloserAndCanBeRevisedAgain) {
-  const auto sheet = wavySheet(31);
+  const auto sheet = builtWavySheet(31);
   const FitOptions options{.tolerance = 3e-3, .enough = 1e-2, .bisections = {{0}, {0}, {2}, {2}}};
   const auto plain = fitSurface(sheet.region, sheet.map, options, Progress());
   const auto close = closerCharts(plain, {1}, sheet.region, sheet.map, options, Progress());
@@ -186,7 +174,7 @@ TEST(ChartsFit, chosenChartsComeCloserAndCanBeRevisedAgain) {
 }
 
 TEST(ChartsFit, noSmootherChartsComeOutWhereTheToleranceLeavesNoRoom) {
-  const auto sheet = wavySheet(31);
+  const auto sheet = builtWavySheet(31);
   const FitOptions options{.tolerance = 3e-3, .bisections = {{0}}};
   const auto plain = fitSurface(sheet.region, sheet.map, options, Progress());
   FitOptions closer = options;

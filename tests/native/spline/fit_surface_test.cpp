@@ -12,22 +12,9 @@
 namespace trimquad {
 namespace {
 
-Eigen::Vector3d wave(double x, double y) {
-  return {std::sin(x) * std::cos(y), std::cos(x) * std::cos(y), -std::sin(x) * std::sin(y)};
-}
-
 /// z = sin x cos y on [-3, 3]^2, 28 x 28 quads, 100 x 100 points.
-AnalyticRegion wavySheet(double half = 14) {
-  AnalyticRegion sheet;
-  sheet.columns = sheet.rows = 99;
-  sheet.firstU = sheet.firstV = -half;
-  sheet.lastU = sheet.lastV = half;
-  sheet.point = [](double u, double v) {
-    const double x = 3 * u / 14, y = 3 * v / 14;
-    return Eigen::Vector3d(x, y, wave(x, y).x());
-  };
-  sheet.surface = std::make_shared<GraphSurface>(wave);
-  return sheet;
+AnalyticRegion centredWavySheet(double half = 14) {
+  return wavySheet(-half, half, 14.0 / 3);
 }
 
 struct Figures {
@@ -68,7 +55,7 @@ FittedSurface fit(AnalyticRegion& a, double tolerance, int degree = 3) {
 }
 
 TEST(FitSurface, wavySheetMeetsTheToleranceWithFewPoles) {
-  auto sheet = wavySheet();
+  auto sheet = centredWavySheet();
   EXPECT_LE(fit(sheet, 3e-4).surface.poles.size(), 180u);
   if (!sample::kSanitized) {
     EXPECT_LE(fit(sheet, 2e-5).surface.poles.size(), 700u);
@@ -141,7 +128,7 @@ TEST(FitSurface, planesAndCylindersNeedFewPoles) {
 }
 
 TEST(FitSurface, roughParametersAreCorrected) {
-  auto sheet = wavySheet();
+  auto sheet = centredWavySheet();
   // Smooth distortion of over half a quad, and noise of a tenth of a triangle.
   sheet.chart = [](double u, double v) {
     return Eigen::Vector2d(
@@ -155,7 +142,7 @@ TEST(FitSurface, hundredRandomTrimsOfTheWavySheet) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int n = 0; n < 100; ++n) {
-    auto sheet = wavySheet(6);
+    auto sheet = centredWavySheet(6);
     sheet.columns = sheet.rows = 60;
     const double size = 3 + 2.5 * uniform(random), lobes = 2 + std::floor(4 * uniform(random)),
                  depth = 0.5 * uniform(random), hole = 1.5 * uniform(random), turn = 6 * uniform(random),
@@ -201,12 +188,12 @@ TEST(FitSurface, unreachableTolerancesSayHowFarTheyCame) {
 }
 
 TEST(FitSurface, sameInputGivesTheSamePoles) {
-  auto a = wavySheet(8), b = wavySheet(8);
+  auto a = centredWavySheet(8), b = centredWavySheet(8);
   EXPECT_EQ(fit(a, 1e-3).surface.poles, fit(b, 1e-3).surface.poles);
 }
 
 TEST(FitSurface, cancels) {
-  auto sheet = wavySheet();
+  auto sheet = centredWavySheet();
   sheet.build();
   Progress progress;
   progress.cancel();
@@ -214,7 +201,7 @@ TEST(FitSurface, cancels) {
 }
 
 TEST(FitSurface, isGivenUpBeyondSoManyPoles) {
-  auto sheet = wavySheet();
+  auto sheet = centredWavySheet();
   sheet.build();
   FitOptions options;
   options.tolerance = 1e-4;

@@ -53,4 +53,21 @@ void AnalyticRegion::build() {
         }
 }
 
+Eigen::Vector3d wave(double x, double y) {
+  return {std::sin(x) * std::cos(y), std::cos(x) * std::cos(y), -std::sin(x) * std::sin(y)};
+}
+
+AnalyticRegion wavySheet(double first, double last, double quadsPerUnit) {
+  AnalyticRegion sheet;
+  sheet.columns = sheet.rows = 99;
+  sheet.firstU = sheet.firstV = first;
+  sheet.lastU = sheet.lastV = last;
+  sheet.point = [=, middle = 0.5 * (first + last)](double u, double v) {
+    const double x = (u - middle) / quadsPerUnit, y = (v - middle) / quadsPerUnit;
+    return Eigen::Vector3d(x, y, wave(x, y).x());
+  };
+  sheet.surface = std::make_shared<GraphSurface>(wave);
+  return sheet;
+}
+
 }  // namespace trimquad

@@ -58,6 +58,13 @@ class GraphSurface : public TrueSurface {
   Height height_;
 };
 
+/// sin x cos y and its derivatives.
+Eigen::Vector3d wave(double x, double y);
+
+/// z = wave(x, y) around the origin, 100 x 100 points, mapped onto the square of the two coordinates; not
+/// built.
+AnalyticRegion wavySheet(double first, double last, double quadsPerUnit);
+
 class SphereSurface : public TrueSurface {
  public:
   explicit SphereSurface(double radius) : radius_(radius) {}
