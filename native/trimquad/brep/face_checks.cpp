@@ -10,6 +10,7 @@
 
 #include "trimquad/base/byte_key.h"
 #include "trimquad/base/parallel.h"
+#include "trimquad/brep/face_separation.h"
 #include "trimquad/brep/occt_guard.h"
 #include "trimquad/brep/occt_parts.h"
 
@@ -96,18 +97,20 @@ std::vector<Shape> facesOfFile(const SplineModel& model) {
   });
 }
 
-/// The pairs of faces of one body whose boxes overlap, ascending. Bodies may touch each other, or cross:
-/// those of the input do.
+/// The pairs of faces of one body whose boxes overlap and that may cross, ascending. Bodies may touch each
+/// other, or cross: those of the input do.
 std::vector<std::pair<int, int>> closePairs(const SplineModel& model, const std::vector<Shape>& faces) {
   std::vector<Bnd_Box> boxes(faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f) BRepBndLib::Add(faces[f].topology(), boxes[f]);
   std::vector<int> body(faces.size(), -1);
   for (const auto& shell : model.shells)
     for (const int f : shell.faces) body[f] = shell.body;
+  const FaceSeparation separation(model);
   std::vector<std::pair<int, int>> result;
   for (int a = 0; a < int(faces.size()); ++a)
     for (int b = a + 1; b < int(faces.size()); ++b)
-      if (body[a] == body[b] && !boxes[a].IsOut(boxes[b])) result.push_back({a, b});
+      if (body[a] == body[b] && !boxes[a].IsOut(boxes[b]) && !separation.areApart(a, b))
+        result.push_back({a, b});
   return result;
 }
 

@@ -20,10 +20,11 @@ class FaceChecks {
   /// What is wrong with each face of the model (see trimquad::faults()), in the model's order: alone, and
   /// with others, which counts for both. Of the faces that share an edge, those are checked together first
   /// where one is among `folded`, indices of faces that have folds, or both are of one region and bent
-  /// against each other somewhere along the edge; where nothing is at fault so far, all whose boxes overlap.
-  /// A check that crashes or does not end within a limit, which usual ones stay far below, is a fault. What
-  /// was done is added to the progress's work. On up to `threads` threads. Throws Error(Stage, "write") as
-  /// assemble() does, Error(Input, "setup") where the program cannot be run, Error(Cancelled).
+  /// against each other somewhere along the edge; where nothing is at fault so far, all of one body whose
+  /// boxes overlap and that are not surely apart (FaceSeparation). A check that crashes or does not end
+  /// within a limit, which usual ones stay far below, is a fault. What was done is added to the progress's
+  /// work. On up to `threads` threads. Throws Error(Stage, "write") as assemble() does, Error(Input, "setup")
+  /// where the program cannot be run, Error(Cancelled).
   std::vector<std::vector<std::string>> faults(const SplineModel& model, const std::vector<int>& folded,
                                                int threads, const Progress& progress);
 
