@@ -1,33 +1,39 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
 #include <set>
+#include <variant>
 #include <vector>
 
-#include "trimquad/spline/spline_model.h"
+#include "trimquad/brep/face_cells.h"
 
 namespace trimquad {
 
-/// Tells faces of a model apart by their poles, in whose convex hulls they lie.
+/// Tells faces of a model apart by their poles and Bézier points, in whose convex hulls they lie.
 class FaceSeparation {
  public:
   explicit FaceSeparation(const SplineModel& model);
 
-  /// Whether two faces surely have nothing in common but edges and vertices that both use: one is flat, and
-  /// the other one on one side of its plane, further off than tolerances reach, but for what they share. Only
-  /// flat faces may share something. False says nothing.
-  bool areApart(int a, int b) const { return isBeside(a, b) || isBeside(b, a); }
+  /// Whether two faces surely have nothing in common but edges and vertices that both use: further apart than
+  /// tolerances reach, or both flat and one, but for what they share, on one side of the other's plane. False
+  /// says nothing.
+  bool areApart(int a, int b) const;
 
  private:
+  struct Flat {
+    Eigen::Hyperplane<double, 3> plane;
+    Eigen::Matrix<double, 2, 3> axes;  ///< of a rectangle around it
+    Eigen::AlignedBox2d rectangle;     ///< in these axes
+  };
   struct Face {
-    std::optional<Eigen::Hyperplane<double, 3>> plane;  ///< of flat ones
-    double tolerance = 0;                               ///< how far its poles, edges and vertices may be off
+    std::variant<Flat, std::vector<FaceCell>> shape;
+    Eigen::AlignedBox3d box;
+    double tolerance = 0;  ///< how far poles, edges and vertices may be off
     std::set<SplineEdgeId> edges;
     std::set<SplineVertexId> vertices;
   };
 
-  bool isBeside(int face, int flat) const;
+  bool isBeside(const Face& face, const Face& other, const Flat& flat, double distance) const;
 
   const SplineModel& model_;
   std::vector<Face> faces_;
