@@ -1,4 +1,7 @@
 #include <BOPAlgo_ArgumentAnalyzer.hxx>
+#include <BOPAlgo_CheckerSI.hxx>
+#include <BOPDS_DS.hxx>
+#include <BOPDS_MapOfPair.hxx>
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepCheck_ListIteratorOfListOfStatus.hxx>
@@ -138,6 +141,35 @@ void appendStatus(const BRepCheck_ListOfStatus& statuses, const std::string& whe
     if (it.Value() != BRepCheck_NoError) found.push_back(where + ": " + name(it.Value()));
 }
 
+/// Looks for crossings between elements as BOPAlgo_ArgumentAnalyzer does, but for those of a surface with
+/// itself, which take most of the time.
+class Crossings : public BOPAlgo_CheckerSI {
+ public:
+  explicit Crossings(const TopoDS_Shape& shape) { AddArgument(shape); }
+
+  void Perform(const Message_ProgressRange& range = Message_ProgressRange()) override {
+    BOPAlgo_PaveFiller::Perform(range);
+    if (HasErrors()) return;
+    // Candidates so far.
+    const_cast<BOPDS_MapOfPair&>(myDS->Interferences()).Clear();
+    PostTreat();
+  }
+
+  void appendFaults(const Names& names, std::vector<std::string>& found) const {
+    if (HasErrors()) {
+      found.push_back("CheckFailed");
+      return;
+    }
+    for (BOPDS_MapOfPair::Iterator it(myDS->Interferences()); it.More(); it.Next()) {
+      int a = 0, b = 0;
+      it.Value().Indices(a, b);
+      if (myDS->IsNewShape(a) || myDS->IsNewShape(b)) continue;
+      found.push_back(names(myDS->Shape(a)) + ", " + names(myDS->Shape(b)) + ": " +
+                      name(BOPAlgo_SelfIntersect));
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<std::string> faults(const Shape& shape, FaultKinds kinds) {
@@ -161,8 +193,12 @@ std::vector<std::string> faults(const Shape& shape, FaultKinds kinds) {
         }
       if (found.empty()) found.push_back(names(copy) + ": CheckFailed");
     }
-    // The second analyser crashes on edges without curves, which the first one names.
-    if (found.empty()) {
+    if (kinds.crossings && !kinds.elements) {
+      Crossings crossings(copy);
+      crossings.Perform();
+      crossings.appendFaults(names, found);
+    } else if (found.empty()) {
+      // Crashes on edges without curves, which the first analyser names.
       BOPAlgo_ArgumentAnalyzer analyzer;
       analyzer.SetShape1(copy);
       analyzer.ArgumentTypeMode() = kinds.elements;

@@ -452,9 +452,10 @@ std::optional<std::vector<SplineSurface>> JoinedSpace::leastSquares(
   std::vector<int> all(charts.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<SplineSurface> surfaces;
+  const Eigen::Vector3d middle = middleOf(data);
   for (const int c : all) {
     surfaces.push_back(charts[c].emptySurface());
-    surfaces.back().poles.assign(charts[c].poles(), middleOf(data));
+    surfaces.back().poles.assign(charts[c].poles(), middle);
   }
   return leastSquares(data, fairness, all, std::move(surfaces), progress);
 }
