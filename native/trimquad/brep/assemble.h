@@ -22,8 +22,9 @@ std::vector<int> faceOrder(const SplineModel& model);
 
 /// What is looked for in a shape.
 struct FaultKinds {
-  bool elements = true;   ///< faults of its vertices, edges and faces: validity, continuity, small edges
-  bool crossings = true;  ///< elements that cross others; with `elements`, also those that cross themselves
+  bool elements = true;       ///< faults of its vertices, edges and faces: validity, continuity, small edges
+  bool crossings = true;      ///< elements that cross others
+  bool selfCrossings = true;  ///< faces that cross themselves; only with `crossings`
 };
 
 /// What is wrong with the shape, one line each ("Edge7: InvalidCurveOnSurface"), empty where nothing is:

@@ -25,7 +25,7 @@ namespace {
 struct Request {
   std::uint64_t size;  ///< of the shape that follows
   std::int32_t seconds;
-  std::uint8_t elements, crossings;
+  std::uint8_t elements, crossings, selfCrossings;
 };
 
 constexpr int kCancelledWithin = 100;  // milliseconds
@@ -132,7 +132,7 @@ class Checker::Process {
 
   std::optional<std::vector<std::string>> faults(const std::string& shape, FaultKinds kinds, int seconds,
                                                  const Progress& progress) const {
-    const Request request{shape.size(), seconds, kinds.elements, kinds.crossings};
+    const Request request{shape.size(), seconds, kinds.elements, kinds.crossings, kinds.selfCrossings};
     if (!sendAll(socket_, &request, sizeof request) || !sendAll(socket_, shape.data(), shape.size()))
       return {};
     return receiveTexts(socket_, progress);
@@ -200,7 +200,8 @@ void serveChecks() {
     limit(request.seconds);
     std::vector<std::string> found;
     try {
-      found = faults(shapeFromFreeCAD(shape), {request.elements != 0, request.crossings != 0});
+      found = faults(shapeFromFreeCAD(shape),
+                     {request.elements != 0, request.crossings != 0, request.selfCrossings != 0});
     } catch (const Error& error) {
       found = {error.message()};
     }

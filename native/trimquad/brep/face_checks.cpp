@@ -183,7 +183,8 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   for (const auto& face : model.faces) number.push_back(numbers.of(face));
 
   std::vector<std::vector<std::string>> result(faces.size());
-  /// Checks of faces alone, or of pairs for crossings.
+  /// Checks of faces as they are, or, twice the same, of those in the file with themselves, or of pairs
+  /// there.
   const auto check = [&](const std::vector<std::vector<int>>& groups) {
     std::vector<std::vector<int>> keys;
     std::vector<int> unknown;
@@ -197,23 +198,22 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
     parallelEach(int(unknown.size()), threads, [&](int k) {
       progress.check();
       const auto& group = groups[unknown[k]];
-      const bool alone = group.size() == 1;
-      std::vector<Shape> members;
-      int poles = 0;
-      for (const int f : group) {
-        members.push_back(alone ? faces[f] : inFile[f]);
-        poles += int(model.faces[f].surface.poles.size());
-      }
+      const bool inMemory = group.size() == 1, alone = group.front() == group.back();
+      const auto& source = inMemory ? faces : inFile;
+      const FaultKinds kinds{.elements = inMemory, .crossings = !inMemory, .selfCrossings = alone};
+      int poles = int(model.faces[group.front()].surface.poles.size());
+      if (!alone) poles += int(model.faces[group.back()].surface.poles.size());
       const int seconds = alone ? secondsFor(poles) : kSecondsOfTwo + poles / kPolesOfTwoPerSecond;
-      const auto answer =
-          checker_.faults(alone ? members[0] : compound(members), {alone, true}, seconds, progress);
+      const Shape shape =
+          alone ? source[group.front()] : compound({source[group.front()], source[group.back()]});
+      const auto answer = checker_.faults(shape, kinds, seconds, progress);
       found[k] = answer ? *answer : kEndless;
       progress.addWork(answer ? kWorkPerPole * poles : kWorkPerSecond * seconds);
       progress.report((k + 1.0) / double(unknown.size()));
     });
     for (std::size_t k = 0; k < unknown.size(); ++k) known_[keys[unknown[k]]] = found[k];
     for (std::size_t k = 0; k < groups.size(); ++k)
-      for (const int f : groups[k]) {
+      for (const int f : std::set<int>(groups[k].begin(), groups[k].end())) {
         const auto& faults = known_[keys[k]];
         result[f].insert(result[f].end(), faults.begin(), faults.end());
       }
@@ -228,6 +228,9 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   std::vector<std::vector<int>> single;
   for (int f = 0; f < int(faces.size()); ++f) single.push_back({f});
   check(single);
+  std::vector<std::pair<int, int>> withItself;
+  for (int f = 0; f < int(faces.size()); ++f) withItself.push_back({f, f});
+  checkPairs(withItself);
   checkPairs(neighboursToCheckFirst(model, folded));
   if (std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
     checkPairs(closePairs(model, facesInFile()));

@@ -10,8 +10,9 @@
 namespace trimquad {
 
 /// Checks a model that is trimmed again and again as OpenCASCADE does, face by face and pair by pair: such as
-/// have not changed since an earlier time are not checked again. Pairs are checked as the model's STEP file
-/// holds them: its numbers are rounded, and whether OpenCASCADE's intersections end can hang on that.
+/// have not changed since an earlier time are not checked again. Crossings, of a face with itself and of
+/// pairs, are looked for as the model's STEP file holds them: its numbers are rounded, and whether
+/// OpenCASCADE's intersections end can hang on that.
 class FaceChecks {
  public:
   /// \param checker the file of the program `trimquad_checker`

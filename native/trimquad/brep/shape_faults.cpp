@@ -193,16 +193,18 @@ std::vector<std::string> faults(const Shape& shape, FaultKinds kinds) {
         }
       if (found.empty()) found.push_back(names(copy) + ": CheckFailed");
     }
-    if (kinds.crossings && !kinds.elements) {
+    if (found.empty() && kinds.crossings && !kinds.selfCrossings) {
       Crossings crossings(copy);
       crossings.Perform();
       crossings.appendFaults(names, found);
-    } else if (found.empty()) {
-      // Crashes on edges without curves, which the first analyser names.
+    }
+    const bool analyzes = kinds.elements || (kinds.crossings && kinds.selfCrossings);
+    // Crashes on edges without curves, which the first analyser names.
+    if (found.empty() && analyzes) {
       BOPAlgo_ArgumentAnalyzer analyzer;
       analyzer.SetShape1(copy);
       analyzer.ArgumentTypeMode() = kinds.elements;
-      analyzer.SelfInterMode() = kinds.crossings;
+      analyzer.SelfInterMode() = kinds.crossings && kinds.selfCrossings;
       analyzer.SmallEdgeMode() = kinds.elements;
       analyzer.RebuildFaceMode() = kinds.elements;
       analyzer.ContinuityMode() = kinds.elements;
