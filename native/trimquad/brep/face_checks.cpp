@@ -29,6 +29,9 @@ constexpr int kPolesPerSecond = 200, kPolesOfTwoPerSecond = 1000;
 /// Work of checks, in steps that take as long as those of fits.
 constexpr long kWorkPerPole = 200, kWorkPerSecond = 2000000;
 
+/// In place of the second face's number, where a face was checked with itself.
+constexpr int kItself = -1;
+
 const std::vector<std::string> kEndless{"the check does not end"};
 
 struct EdgeUse {
@@ -191,6 +194,7 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
     for (const auto& group : groups) {
       keys.emplace_back();
       for (const int f : group) keys.back().push_back(number[f]);
+      if (group.size() > 1 && group.front() == group.back()) keys.back().back() = kItself;
       if (!known_.contains(keys.back())) unknown.push_back(int(keys.size()) - 1);
     }
     if (!unknown.empty() && groups[unknown.front()].size() > 1) facesInFile();

@@ -36,7 +36,7 @@ class FaceChecks {
  private:
   Checker checker_;
   std::map<std::string, int> numbers_;  ///< of all that makes up a face, an edge or a vertex
-  std::map<std::vector<int>, std::vector<std::string>> known_;  ///< by numbers of one face or two
+  std::map<std::vector<int>, std::vector<std::string>> known_;  ///< by numbers of faces
 };
 
 }  // namespace trimquad

@@ -43,6 +43,17 @@ TEST(FaceChecks, facesThatCrossAreFoundWhereverTheyAre) {
   for (const auto& faults : checksOf().faults(model, {}, 1, unwatched)) EXPECT_NE(faults, none);
 }
 
+TEST(FaceChecks, aFaceThatCrossesItselfIsFound) {
+  auto model = bulgedBox(0.8, {5}).trim();
+  EXPECT_EQ(checksOf().faults(model, {}, 1, unwatched), Faults(1));
+  // A loop, away from the edges.
+  const std::vector<Eigen::Vector3d> loop{{2.2, 0, 0}, {2.5, 0, 3}, {-3.2, 0, 3}, {-3.9, 0, -2}};
+  auto& s = model.faces[0].surface;
+  for (int j = s.countV / 3; j <= 2 * s.countV / 3; ++j)
+    for (int i = 0; i < 4; ++i) s.poles[s.countU / 2 - 1 + i + s.countU * j] += loop[i];
+  EXPECT_NE(checksOf().faults(model, {}, 1, unwatched), Faults(1));
+}
+
 TEST(FaceChecks, bodiesMayCrossEachOther) {
   auto model = spikedFaces();
   model.shells = {{{0}, {}, 0}, {{1}, {}, 1}};
