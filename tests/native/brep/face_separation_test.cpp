@@ -54,7 +54,7 @@ struct Rectangles {
   }
 };
 
-const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+const Vector3d alongX = Vector3d::UnitX(), alongY = Vector3d::UnitY(), alongZ = Vector3d::UnitZ();
 
 TEST(FaceSeparation, flatFacesOfABoxAreApartButForTheirEdges) {
   const auto model = test::bulgedBox(0).trim();
@@ -80,12 +80,12 @@ Rectangles withCurvedTop() {
 
 TEST(FaceSeparation, aCurvedFaceIsApartFromAPlaneThatItsTrimDoesNotReach) {
   Rectangles r = withCurvedTop();
-  r.add(Vector3d(-9, -9, 3.2), 18 * x, 18 * y);  // 1: below
-  r.add(Vector3d(-9, -9, 10), 18 * x, 18 * y);   // 2: above
-  r.add(Vector3d(6.5, -9, -9), 18 * y, 18 * z);  // 3: through the surface beside the trim
-  r.add(Vector3d(-9, -9, 3.8), 18 * x, 18 * y);  // 4: through the face
-  r.add(Vector3d(-9, 0, 3.8), 5 * x, y);         // 5: reaches into it
-  r.add(Vector3d(-9, 0, 3.8), 2 * x, y);         // 6: ends before it
+  r.add(Vector3d(-9, -9, 3.2), 18 * alongX, 18 * alongY);  // 1: below
+  r.add(Vector3d(-9, -9, 10), 18 * alongX, 18 * alongY);   // 2: above
+  r.add(Vector3d(6.5, -9, -9), 18 * alongY, 18 * alongZ);  // 3: through the surface beside the trim
+  r.add(Vector3d(-9, -9, 3.8), 18 * alongX, 18 * alongY);  // 4: through the face
+  r.add(Vector3d(-9, 0, 3.8), 5 * alongX, alongY);         // 5: reaches into it
+  r.add(Vector3d(-9, 0, 3.8), 2 * alongX, alongY);         // 6: ends before it
   for (const auto& [face, apart] :
        std::map<int, bool>{{1, true}, {2, true}, {3, true}, {4, false}, {5, false}, {6, true}}) {
     EXPECT_EQ(r.areApart(0, face), apart) << face;
@@ -114,7 +114,7 @@ TEST(FaceSeparation, curvedFacesAreApartWhereTheirCellsAre) {
 }
 
 TEST(FaceCells, holesAndWhatIsOutsideHaveNone) {
-  // A surface of 10 x 10 unit rectangles; a trim from 1.5 to 8.5, a hole from 3.5 to 6.5.
+  // A surface of 10 alongX 10 unit rectangles; a trim from 1.5 to 8.5, a hole from 3.5 to 6.5.
   SplineFace face;
   auto& s = face.surface;
   s.degreeU = s.degreeV = 2;
@@ -151,23 +151,23 @@ TEST(FaceCells, holesAndWhatIsOutsideHaveNone) {
 
 TEST(FaceSeparation, facesThatCrossTouchOrLieInOnePlaneAreNot) {
   Rectangles r;
-  r.add(Vector3d::Zero(), x, y);
-  r.add(Vector3d(0.5, -1, -1), 3 * y, 3 * z);   // crosses
-  r.add(Vector3d(0.5, 0.2, 0), 0.5 * y, z);     // stands on it
-  r.add(Vector3d(0.5, 0.2, 1e-7), 0.5 * y, z);  // as good as
-  r.add(Vector3d(0.5, 0.5, 0), x, y);           // overlaps
-  r.add({0, 1, 2, 3});                          // is the same
+  r.add(Vector3d::Zero(), alongX, alongY);
+  r.add(Vector3d(0.5, -1, -1), 3 * alongY, 3 * alongZ);   // crosses
+  r.add(Vector3d(0.5, 0.2, 0), 0.5 * alongY, alongZ);     // stands on it
+  r.add(Vector3d(0.5, 0.2, 1e-7), 0.5 * alongY, alongZ);  // as good as
+  r.add(Vector3d(0.5, 0.5, 0), alongX, alongY);           // overlaps
+  r.add({0, 1, 2, 3});                                    // is the same
   for (int b = 1; b < 6; ++b) {
     EXPECT_FALSE(r.areApart(0, b)) << b;
     EXPECT_FALSE(r.areApart(b, 0)) << b;
   }
-  r.add(Vector3d(0.5, 0.2, 1e-3), 0.5 * y, z);
+  r.add(Vector3d(0.5, 0.2, 1e-3), 0.5 * alongY, alongZ);
   EXPECT_TRUE(r.areApart(0, 6));
 }
 
 TEST(FaceSeparation, aSharedCornerMayTouchButNoOther) {
   Rectangles r;
-  r.add(Vector3d::Zero(), x, y);
+  r.add(Vector3d::Zero(), alongX, alongY);
   const auto standing = [&](int foot) {
     return std::array<int, 4>{foot, r.corner({0.2, 0.2, 1}), r.corner({0.4, 0.4, 2}),
                               r.corner({0.2, 0.2, 1.5})};
