@@ -125,16 +125,14 @@ SheetMover ModelTrimmer::mover() const {
   return SheetMover(bodies(), memory_, accepts, progress_);
 }
 
-std::map<int, std::vector<ChartDeviation>> ModelTrimmer::movedRegions() const {
-  std::map<int, std::vector<ChartDeviation>> result;
-  for (const int r : moved_) {
-    if (!borders_[r]) {
-      result[r] = {deviationOf(r, sheets_[firstSheet_[r]].surface, true)};
-      continue;
+std::map<int, std::vector<SplineModel::MovedSurface>> ModelTrimmer::movedRegions() const {
+  std::map<int, std::vector<SplineModel::MovedSurface>> result;
+  for (const int r : moved_)
+    for (int c = 0; c < (borders_[r] ? int(fitted_[r]->surfaces.size()) : 1); ++c) {
+      const auto& surface = sheets_[firstSheet_[r] + c].surface;
+      result[r].push_back(
+          {surface, borders_[r] ? deviationOfChart(r, c, surface) : deviationOf(r, surface, true)});
     }
-    for (int c = 0; c < int(fitted_[r]->surfaces.size()); ++c)
-      result[r].push_back(deviationOfChart(r, c, sheets_[firstSheet_[r] + c].surface));
-  }
   return result;
 }
 

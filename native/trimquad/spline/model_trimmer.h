@@ -80,8 +80,8 @@ class ModelTrimmer {
 
   /// \param tolerances by region: how far free edges may be from their curves, model units
   SplineModel trim(const std::vector<double>& tolerances) const;
-  /// How far the regions whose surfaces were moved are from them now, by chart.
-  std::map<int, std::vector<ChartDeviation>> movedRegions() const;
+  /// The surfaces of the regions that were moved, and how far these are from them now, by chart.
+  std::map<int, std::vector<SplineModel::MovedSurface>> movedRegions() const;
 
  private:
   void makeSheets();

@@ -377,30 +377,62 @@ SpaceCurve SplineSurface::curveAtV(double v) const {
   return curve;
 }
 
-SplineSurface withKnotU(const SplineSurface& surface, double u, int times) {
+namespace {
+
+/// The surface whose rows, at constant v, are `of` each row.
+template <class Of>
+SplineSurface rowByRow(const SplineSurface& surface, const Of& of) {
   SplineSurface result = surface;
-  result.countU = surface.countU + times;
   result.poles.clear();
   for (int j = 0; j < surface.countV; ++j) {
     const auto row = surface.poles.begin() + std::ptrdiff_t(surface.countU) * j;
-    const auto finer = withKnot<3>({surface.degreeU, surface.knotsU, {row, row + surface.countU}}, u, times);
-    result.poles.insert(result.poles.end(), finer.poles.begin(), finer.poles.end());
-    result.knotsU = finer.knots;
+    SpaceCurve other = of(SpaceCurve{surface.degreeU, surface.knotsU, {row, row + surface.countU}});
+    result.poles.insert(result.poles.end(), other.poles.begin(), other.poles.end());
+    result.countU = int(other.poles.size());
+    result.knotsU = std::move(other.knots);
   }
   return result;
 }
 
-SplineSurface withKnotV(const SplineSurface& surface, double v, int times) {
+/// The same for columns, at constant u.
+template <class Of>
+SplineSurface columnByColumn(const SplineSurface& surface, const Of& of) {
   SplineSurface result = surface;
-  result.countV = surface.countV + times;
-  result.poles.resize(std::size_t(result.countU) * result.countV);
   for (int i = 0; i < surface.countU; ++i) {
     std::vector<Eigen::Vector3d> column(surface.countV);
     for (int j = 0; j < surface.countV; ++j) column[j] = surface.pole(i, j);
-    const auto finer = withKnot<3>({surface.degreeV, surface.knotsV, std::move(column)}, v, times);
-    for (int j = 0; j < result.countV; ++j) result.poles[i + result.countU * j] = finer.poles[j];
-    result.knotsV = finer.knots;
+    SpaceCurve other = of(SpaceCurve{surface.degreeV, surface.knotsV, std::move(column)});
+    result.countV = int(other.poles.size());
+    result.poles.resize(std::size_t(result.countU) * result.countV);
+    for (int j = 0; j < result.countV; ++j) result.poles[i + result.countU * j] = other.poles[j];
+    result.knotsV = std::move(other.knots);
   }
+  return result;
+}
+
+}  // namespace
+
+SplineSurface withKnotU(const SplineSurface& surface, double u, int times) {
+  return rowByRow(surface, [&](SpaceCurve row) { return withKnot(std::move(row), u, times); });
+}
+
+SplineSurface withKnotV(const SplineSurface& surface, double v, int times) {
+  return columnByColumn(surface, [&](SpaceCurve column) { return withKnot(std::move(column), v, times); });
+}
+
+SplineSurface restricted(const SplineSurface& surface, const Eigen::AlignedBox2d& part) {
+  SplineSurface result = surface;
+  const auto cut = [&](int axis) {
+    return [&part, axis](const SpaceCurve& line) {
+      return restricted(line, part.min()[axis], part.max()[axis]);
+    };
+  };
+  if (part.min()[0] > surface.firstU() || part.max()[0] < surface.lastU()) {
+    result = rowByRow(result, cut(0));
+    result.closedU = false;
+  }
+  if (part.min()[1] > surface.firstV() || part.max()[1] < surface.lastV())
+    result = columnByColumn(result, cut(1));
   return result;
 }
 

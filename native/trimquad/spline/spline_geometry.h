@@ -114,4 +114,8 @@ struct SplineSurface {
 SplineSurface withKnotU(const SplineSurface& surface, double u, int times = 1);
 SplineSurface withKnotV(const SplineSurface& surface, double v, int times = 1);
 
+/// The piece of the surface over a part of its domain, with the same parameters; open in u where that is not
+/// all of it.
+SplineSurface restricted(const SplineSurface& surface, const Eigen::AlignedBox2d& part);
+
 }  // namespace trimquad

@@ -39,8 +39,9 @@ struct SplineCoedge {
   PlaneCurve curve;
 };
 
-/// A trimmed surface. The outer loop comes first and runs counter-clockwise in the parameter plane, the
-/// others clockwise. A seam edge of a closed surface occurs twice in the loop, once in each direction.
+/// A trimmed surface, of no more knot spans to a side than its loops reach. The outer loop comes first and
+/// runs counter-clockwise in the parameter plane, the others clockwise. A seam edge of a closed surface
+/// occurs twice in the loop, once in each direction.
 struct SplineFace {
   SplineSurface surface;
   std::vector<std::vector<SplineCoedge>> loops;
@@ -63,9 +64,13 @@ struct SplineModel {
   /// on the first face's surface, the second one's only within the edge's tolerance.
   int looseEdges = 0;
   std::set<int> looseRegions = {};  ///< whose surfaces these are between
-  /// By region whose surfaces were moved to agree with others that they touch: how far it lies from them now,
-  /// by chart.
-  std::map<int, std::vector<ChartDeviation>> moved = {};
+  /// By chart, of a region whose surfaces were moved to agree with others that they touch: those, whole, and
+  /// how far it lies from them now.
+  struct MovedSurface {
+    SplineSurface surface;
+    ChartDeviation deviation;
+  };
+  std::map<int, std::vector<MovedSurface>> moved = {};
 };
 
 }  // namespace trimquad

@@ -1,6 +1,7 @@
 #include "trimquad/spline/trim_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -15,6 +16,29 @@ namespace {
 constexpr double kSheetSlack = 0.5;  ///< quads
 /// Shorter curves vanish: their ends become one vertex.
 constexpr double kShortestEdge = 10 * kSmallestTolerance;
+/// A loop along a grid line lies on it up to rounding.
+constexpr double kOnLine = 1e-9;  ///< quads
+
+/// The last knot up to `low` and the first one from `high` on, or the ends of the domain.
+std::array<double, 2> spansAround(const std::vector<double>& knots, int degree, double low, double high) {
+  const auto begin = knots.begin() + degree, end = knots.end() - degree;
+  const auto after = std::upper_bound(begin, end, low + kOnLine);
+  const auto last = std::lower_bound(begin, end, high - kOnLine);
+  return {after == begin ? *begin : *(after - 1), last == end ? *(end - 1) : *last};
+}
+
+/// Takes away what of the surface lies beyond all loops, by whole knot spans: there it may lie on others, and
+/// programs that intersect surfaces take them whole.
+void leaveOutWhatIsUnused(SplineFace& face) {
+  Eigen::AlignedBox2d box;
+  for (const auto& coedge : face.loops.front())
+    for (const auto& pole : coedge.curve.poles) box.extend(pole);
+  SplineSurface& s = face.surface;
+  const auto u = s.closedU ? std::array{s.firstU(), s.lastU()}
+                           : spansAround(s.knotsU, s.degreeU, box.min()[0], box.max()[0]);
+  const auto v = spansAround(s.knotsV, s.degreeV, box.min()[1], box.max()[1]);
+  s = restricted(s, Eigen::AlignedBox2d(Eigen::Vector2d(u[0], v[0]), Eigen::Vector2d(u[1], v[1])));
+}
 
 }  // namespace
 
@@ -266,6 +290,7 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
       }
     for (const int r : crossed) tolerances[r] /= 8;
     if (crossings.empty()) {
+      for (auto& face : result.faces) leaveOutWhatIsUnused(face);
       result.moved = trimmer.movedRegions();
       return result;
     }
@@ -275,13 +300,13 @@ SplineModel trimModel(const Model& model, const std::vector<const GridMap*>& map
 
 FittedSurface fittedAsMoved(const FittedSurface& fitted, const SplineModel& model, int region) {
   FittedSurface result = fitted;
-  for (const auto& face : model.faces)
-    if (face.region == region) (fitted.layout ? result.surfaces[face.chart] : result.surface) = face.surface;
-  result.deviations = model.moved.at(region);
+  const auto& moved = model.moved.at(region);
+  result.deviations.resize(moved.size());
   result.maxDeviation = 0;
-  for (std::size_t c = 0; c < result.deviations.size(); ++c) {
-    if (fitted.layout && result.surfaces[c].poles == fitted.surfaces[c].poles)
-      result.deviations[c] = fitted.deviations[c];
+  for (std::size_t c = 0; c < moved.size(); ++c) {
+    (fitted.layout ? result.surfaces[c] : result.surface) = moved[c].surface;
+    const bool same = fitted.layout && moved[c].surface.poles == fitted.surfaces[c].poles;
+    result.deviations[c] = same ? fitted.deviations[c] : moved[c].deviation;
     result.maxDeviation = std::max(result.maxDeviation, result.deviations[c].max);
   }
   if (!fitted.layout) result.rmsDeviation = result.deviations[0].rms;

@@ -142,7 +142,7 @@ TEST(Separation, isWhatMakesTheQuotientTheSameSurface) {
 
 TEST(Quantize, randomSurfacesGetConsistentSeparatingLengths) {
   const Progress progress;
-  for (unsigned seed = 0; seed < sample::rounds(200) && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(100) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed, true);
     const TMesh tmesh = partition(map, progress);
@@ -179,7 +179,7 @@ TEST(Quantize, aTorusFarSmallerThanAQuadKeepsBothItsHandles) {
 TEST(Quantize, noTwoEdgesOfTheGridJoinTheSamePoints) {
   const Progress progress;
   int narrow = 0;
-  for (unsigned seed = 0; seed < sample::rounds(150) && !testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < sample::rounds(100) && !testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const GridMap map = randomMap(seed, true);
     const auto quads = coneQuarters(map);
@@ -198,7 +198,7 @@ TEST(Quantize, noTwoEdgesOfTheGridJoinTheSamePoints) {
     if (after.widened > 0) expectNoWorseThanWidened(tmesh, before, after);
     narrow += after.widened > 0;
   }
-  EXPECT_GE(narrow, int(sample::rounds(150) / 100));  // few inputs may have none
+  EXPECT_GE(narrow, int(sample::rounds(100) / 100));  // few inputs may have none
 }
 
 TEST(Quantize, aTorusHasThreeQuadsAroundAtLeast) {

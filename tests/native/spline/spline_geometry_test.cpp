@@ -117,6 +117,22 @@ TEST(SplineGeometry, knotInsertionAndRestrictionKeepTheCurve) {
   }
 }
 
+TEST(SplineGeometry, partsOfASurfaceAreItself) {
+  const auto s = randomSurface(3, 2, 6);  // [0, 4] x [-1, 3]
+  const auto part = restricted(s, {Eigen::Vector2d(0.75, -1), Eigen::Vector2d(3.25, 1.5)});
+  EXPECT_EQ(part.firstU(), 0.75);
+  EXPECT_EQ(part.lastU(), 3.25);
+  EXPECT_EQ(part.firstV(), -1);
+  EXPECT_EQ(part.lastV(), 1.5);
+  EXPECT_EQ(part.poles.size(), std::size_t(part.countU) * part.countV);
+  for (double u = 0.75; u <= 3.25; u += 0.25)
+    for (double v = -1; v <= 1.5; v += 0.25)
+      EXPECT_LT((part.point(u, v) - s.point(u, v)).norm(), 1e-13) << u << " " << v;
+  const auto whole = restricted(s, {Eigen::Vector2d(0, -1), Eigen::Vector2d(4, 3)});
+  EXPECT_EQ(whole.poles, s.poles);
+  EXPECT_EQ(whole.knotsU, s.knotsU);
+}
+
 TEST(SplineGeometry, polarFormsAtTheKnotsOfAFinerSplineAreItsPoles) {
   for (int degree : {1, 2, 3, 5}) {
     const auto curve = randomCurve<2>(degree, 20 + degree);

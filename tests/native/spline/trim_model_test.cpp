@@ -55,6 +55,28 @@ TEST(TrimModel, rectangleHasFourExactEdges) {
   EXPECT_EQ(model.vertices.size(), 4u);
 }
 
+TEST(TrimModel, facesKeepOnlyTheKnotSpansThatTheirLoopsReach) {
+  auto sheet = rectangleSheet();  // [0, 10] x [0, 6] of [-1, 11] x [-1, 7] with knots at every half
+  const auto& whole = sheet.fits[0]->surface;
+  const auto model = sheet.trim();
+  const auto& part = model.faces[0].surface;
+  EXPECT_GE(part.firstU(), -0.5);
+  EXPECT_LE(part.lastU(), 10.5);
+  EXPECT_GE(part.firstV(), -0.5);
+  EXPECT_LE(part.lastV(), 6.5);
+  EXPECT_LT(part.poles.size(), whole.poles.size());
+  for (const double u : {0.0, 0.3, 4.7, 10.0})
+    for (const double v : {0.0, 2.2, 6.0}) EXPECT_LT((part.point(u, v) - whole.point(u, v)).norm(), 1e-13);
+  for (const auto& loop : model.faces[0].loops)
+    for (const auto& coedge : loop)
+      for (const auto& pole : coedge.curve.poles) {
+        EXPECT_GE(pole[0], part.firstU() - 1e-9);
+        EXPECT_LE(pole[0], part.lastU() + 1e-9);
+        EXPECT_GE(pole[1], part.firstV() - 1e-9);
+        EXPECT_LE(pole[1], part.lastV() + 1e-9);
+      }
+}
+
 TEST(TrimModel, roundSheetHasItsHoles) {
   const auto model = roundSheet().trim();
   expectExact(model);
@@ -287,8 +309,10 @@ void expectSame(const SplineModel& a, const SplineModel& b) {
   for (std::size_t f = 0; f < a.faces.size(); ++f)
     EXPECT_EQ(a.faces[f].surface.poles, b.faces[f].surface.poles);
   ASSERT_EQ(a.moved.size(), b.moved.size());
-  for (const auto& [region, deviation] : a.moved)
-    EXPECT_EQ(deviation.at(0).max, b.moved.at(region).at(0).max);
+  for (const auto& [region, charts] : a.moved) {
+    EXPECT_EQ(charts.at(0).deviation.max, b.moved.at(region).at(0).deviation.max);
+    EXPECT_EQ(charts.at(0).surface.poles, b.moved.at(region).at(0).surface.poles);
+  }
 }
 
 TEST(TrimModel, theNumberOfThreadsChangesNothing) {
