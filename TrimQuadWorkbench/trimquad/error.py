@@ -10,10 +10,11 @@ class Error(Exception):
     where     the element it happened at, such as 'Face3' or 'line 12'; may be empty
     position  (x, y, z) in model units, or None
     coarse    whether shorter edges of the quads are the cure
+    endless   whether OpenCASCADE's check of a surface does not end, rather than finds it at fault
     others    where several regions failed at once: an Error of each of the others
     """
 
-    def __init__(self, kind, stage, message, where="", position=None, coarse=False):
+    def __init__(self, kind, stage, message, where="", position=None, coarse=False, endless=False):
         text = message
         if where:
             text += f" ({where})"
@@ -23,6 +24,7 @@ class Error(Exception):
         self.kind = kind
         self.stage = stage
         self.coarse = coarse
+        self.endless = endless
         self.message = message
         self.where = where
         self.position = None if position is None else tuple(float(x) for x in position)

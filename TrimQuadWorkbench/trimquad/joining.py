@@ -112,7 +112,8 @@ def _refit_faulty(result, checks, progress):
     for index, found in faulty.items():
         item = result.regions[index]
         advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
-        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name)))
+        endless = all(fault == load().CHECK_DOES_NOT_END for _, fault in found)
+        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name, endless=endless)))
     _refit_all(at_fault, result, progress)
     return bool(faulty)
 
@@ -168,6 +169,10 @@ def _refit(item, charts, error, result, progress):
     item.before_revision = None
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
+    # Another surface over as distorted a map would take as long to be checked as the one that could not be.
+    if error.endless and item.fitted_without_singularities:
+        if regions.fit_over_another_map(item, result, progress, [regions.OWN_MAP]):
+            return
     try:
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):

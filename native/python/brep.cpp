@@ -84,6 +84,7 @@ void bindBrep(py::module_& m) {
   m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
+  m.attr("CHECK_DOES_NOT_END") = kCheckDoesNotEnd;
   py::class_<FaceChecks>(
       m, "FaceChecks",
       "OpenCASCADE's checks of a model's faces, and of pairs of them as its STEP file holds "

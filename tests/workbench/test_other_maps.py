@@ -94,7 +94,8 @@ def test_where_one_surface_does_not_fit_several_around_singularities_are_tried(m
     assert any("no single B-spline surface fits" in w for w in result.warnings)
 
 
-def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tried(monkeypatch):
+@pytest.mark.parametrize("endless", [False, True])
+def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tried(monkeypatch, endless):
     joining = sys.modules["trimquad.joining"]
     native = joining.load()
 
@@ -108,13 +109,15 @@ def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tri
             return self
 
         def faults(self, model, folded, threads, progress):
-            return [["Face1: SelfIntersect"] if len(model.faces) == 1 else [] for _ in model.faces]
+            fault = native.CHECK_DOES_NOT_END if endless else "Face1: SelfIntersect"
+            return [[fault] if len(model.faces) == 1 else [] for _ in model.faces]
 
         def faults_of_whole(self, model, progress):
             return []
 
     monkeypatch.setattr(joining, "load", FaultySingles)
-    monkeypatch.setattr(joining, "REFITS", ())
+    if not endless:  # where it is, the same map is not fitted again
+        monkeypatch.setattr(joining, "REFITS", ())
     result = trimquad.convert(cap(2.4), trimquad.Options(quads=300))
     (region,) = result.regions
     assert region.error is None and not region.fitted_without_singularities

@@ -22,17 +22,17 @@ namespace {
 constexpr double kBent = 0.342;
 constexpr int kPlacesOfBorder = 64;
 
-/// Processor time for a check of a face, and of two for crossings, seconds; thirty times of what usual ones
-/// take, and more.
-constexpr int kSeconds = 10, kSecondsOfTwo = 5;
-constexpr int kPolesPerSecond = 200, kPolesOfTwoPerSecond = 1000;
+/// Processor time for a check of a face, of two for crossings, and of a whole model's elements, seconds, and
+/// how many poles get a second more; thirty times of what usual ones take, and more.
+constexpr int kSeconds = 8, kSecondsOfTwo = 5, kPolesPerSecond = 1000;
+constexpr int kSecondsOfWhole = 10, kPolesOfWholePerSecond = 200;
 /// Work of checks, in steps that take as long as those of fits.
 constexpr long kWorkPerPole = 200, kWorkPerSecond = 2000000;
 
 /// In place of the second face's number, where a face was checked with itself.
 constexpr int kItself = -1;
 
-const std::vector<std::string> kEndless{"the check does not end"};
+const std::vector<std::string> kEndless{kCheckDoesNotEnd};
 
 struct EdgeUse {
   int face;
@@ -115,10 +115,6 @@ std::vector<std::pair<int, int>> closePairs(const SplineModel& model, const std:
       if (body[a] == body[b] && !boxes[a].IsOut(boxes[b]) && !separation.areApart(a, b))
         result.push_back({a, b});
   return result;
-}
-
-int secondsFor(int poles) {
-  return kSeconds + poles / kPolesPerSecond;
 }
 
 /// Numbers of faces with their edges and vertices: the same for such as are the same, bit by bit.
@@ -207,7 +203,7 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
       const FaultKinds kinds{.elements = inMemory, .crossings = !inMemory, .selfCrossings = alone};
       int poles = int(model.faces[group.front()].surface.poles.size());
       if (!alone) poles += int(model.faces[group.back()].surface.poles.size());
-      const int seconds = alone ? secondsFor(poles) : kSecondsOfTwo + poles / kPolesOfTwoPerSecond;
+      const int seconds = (alone ? kSeconds : kSecondsOfTwo) + poles / kPolesPerSecond;
       const Shape shape =
           alone ? source[group.front()] : compound({source[group.front()], source[group.back()]});
       const auto answer = checker_.faults(shape, kinds, seconds, progress);
@@ -247,7 +243,8 @@ std::vector<std::string> FaceChecks::faultsOfWhole(const SplineModel& model, con
   for (const auto& face : model.faces) poles += int(face.surface.poles.size());
   std::vector<std::string> found;
   for (const Shape* whole : {&shape, &read}) {
-    const auto answer = checker_.faults(*whole, {true, false}, secondsFor(poles), progress);
+    const auto answer =
+        checker_.faults(*whole, {true, false}, kSecondsOfWhole + poles / kPolesOfWholePerSecond, progress);
     found = answer ? *answer : kEndless;
     if (!found.empty()) return found;
   }

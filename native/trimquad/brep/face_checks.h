@@ -9,6 +9,9 @@
 
 namespace trimquad {
 
+/// The fault of a face whose check does not end.
+inline constexpr const char* kCheckDoesNotEnd = "the check does not end";
+
 /// Checks a model that is trimmed again and again as OpenCASCADE does, face by face and pair by pair: such as
 /// have not changed since an earlier time are not checked again. Crossings, of a face with itself and of
 /// pairs, are looked for as the model's STEP file holds them: its numbers are rounded, and whether
