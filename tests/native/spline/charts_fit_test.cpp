@@ -9,6 +9,7 @@
 
 #include "support/analytic_region.h"
 #include "support/fit_figures.h"
+#include "support/rounds.h"
 #include "support/sample_maps.h"
 #include "trimquad/base/error.h"
 #include "trimquad/spline/moved_surface.h"
@@ -117,7 +118,7 @@ TEST(ChartsFit, surfacesThatStayFarFromNoiseGiveUpBeforeTheyFollowIt) {
 TEST(ChartsFit, aNarrowBumpIsReachedThoughTheFirstKnotsBringLittle) {
   auto sheet = builtWavySheet(31);
   sheet.surface = nullptr;
-  sheet.columns = sheet.rows = 199;
+  sheet.columns = sheet.rows = sample::fineness(199);
   sheet.point = [](double u, double v) -> Eigen::Vector3d {
     const double x = u - 20.6, y = v - 9.3;
     return {u, v, 1.5 * std::exp(-4 * (x * x + y * y))};
@@ -186,7 +187,7 @@ TEST(ChartsFit, noSmootherChartsComeOutWhereTheToleranceLeavesNoRoom) {
 /// keeps the shape of small figures at the top.
 /// \param radius of the dome's image, quads
 GridMap dome(int quarters, double radius) {
-  constexpr int rings = 40, perSector = 24;
+  constexpr int rings = sample::fineness(40), perSector = sample::fineness(24);
   constexpr double angle = 75 * std::numbers::pi / 180;
   const auto place = [&](int q, int i, int j) -> Eigen::Vector3d {
     const double polar = angle * std::pow(double(i) / rings, 4.0 / quarters),

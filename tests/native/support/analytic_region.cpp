@@ -61,7 +61,7 @@ Eigen::Vector3d wave(double x, double y) {
 
 AnalyticRegion wavySheet(double first, double last, double quadsPerUnit) {
   AnalyticRegion sheet;
-  sheet.columns = sheet.rows = sample::kSanitized ? 59 : 99;
+  sheet.columns = sheet.rows = sample::fineness(99);
   sheet.firstU = sheet.firstV = first;
   sheet.lastU = sheet.lastV = last;
   sheet.point = [=, middle = 0.5 * (first + last)](double u, double v) {
