@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 
-#include "support/rounds.h"
 #include "trimquad/brep/tessellate.h"
 #include "trimquad/mesh/touching_regions.h"
 
@@ -70,7 +69,7 @@ Model tessellatedWhole(const TopoDS_Shape& shape,
                        FeatureOptions features = {.sharp = FeatureOptions::Sharp::Trim},
                        double tolerance = 0.01) {
   features.quadLength = 0.9;
-  return tessellate(Shape(shape), {sample::kSanitized ? 0.45 : 0.3, tolerance, features}, Progress());
+  return tessellate(Shape(shape), {0.3, tolerance, features}, Progress());
 }
 
 /// The number of the region that is neither top nor bottom.

@@ -23,6 +23,7 @@ using namespace test;
 /// points.
 AnalyticRegion builtWavySheet(double quads) {
   AnalyticRegion sheet = wavySheet(0.5, 0.5 + quads, quads / 6);
+  sheet.columns = sheet.rows = 99;
   sheet.build();
   return sheet;
 }
@@ -187,7 +188,7 @@ TEST(ChartsFit, noSmootherChartsComeOutWhereTheToleranceLeavesNoRoom) {
 /// keeps the shape of small figures at the top.
 /// \param radius of the dome's image, quads
 GridMap dome(int quarters, double radius) {
-  constexpr int rings = sample::fineness(40), perSector = sample::fineness(24);
+  constexpr int rings = 40, perSector = 24;
   constexpr double angle = 75 * std::numbers::pi / 180;
   const auto place = [&](int q, int i, int j) -> Eigen::Vector3d {
     const double polar = angle * std::pow(double(i) / rings, 4.0 / quarters),
