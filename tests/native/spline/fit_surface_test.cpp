@@ -178,8 +178,7 @@ TEST(FitSurface, unreachableTolerancesSayHowFarTheyCame) {
   roof.point = [](double u, double v) { return Eigen::Vector3d(u, v, std::abs(u - 0.7 * v)); };
   roof.build();
   try {
-    fitSurface(roof.region, roof.map, {.tolerance = sample::kSanitized ? 1e-2 : 1e-4, .degree = 3},
-               Progress());
+    fitSurface(roof.region, roof.map, {.tolerance = 1e-4, .degree = 3}, Progress());
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), Error::Kind::Stage);
