@@ -170,9 +170,9 @@ def _refit(item, charts, error, result, progress):
     if not charts and regions.fit_over_another_map(item, result, progress, [regions.BEHIND_HOLES]):
         return
     # Another surface over as distorted a map would take as long to be checked as the one that could not be.
-    if error.endless and item.fitted_without_singularities:
-        if regions.fit_over_another_map(item, result, progress, [regions.OWN_MAP]):
-            return
+    single = error.endless and item.fitted_without_singularities
+    if single and regions.fit_over_another_map(item, result, progress, [regions.OWN_MAP]):
+        return
     try:
         item.refits += 1
         while item.refits <= len(REFITS) and not _applies(REFITS[item.refits - 1], item, charts):

@@ -86,12 +86,9 @@ def test_a_quad_is_painted_as_its_picture(tmp_path):
     assert top[0] > 2 * top[2] and bottom[2] > 2 * bottom[0]
 
 
-def test_what_hides_a_surface_hides_its_pattern(tmp_path, monkeypatch):
-    from trimquad import textured_picture
+def test_what_hides_a_surface_hides_its_pattern(tmp_path):
     from trimquad.pictures import view_axes
     from trimquad.textured_picture import write_textured
-
-    monkeypatch.setattr(textured_picture, "FINER", 1)
 
     right, up, towards = view_axes().T
     square = numpy.array([0 * right, right, right + up, up])[numpy.array([[0, 1, 2], [0, 2, 3]])]

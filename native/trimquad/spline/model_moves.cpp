@@ -106,15 +106,20 @@ ChartDeviation ModelTrimmer::deviationOfChart(int r, int chart, const SplineSurf
   return measured(r, surface, std::move(ofChart), [&] { return (*keptSamples(r, key, make))[chart]; });
 }
 
+/// How far a sheet's region, or chart of it, is from this surface.
+/// \param closely whether single surfaces are measured between their samples, too
+ChartDeviation ModelTrimmer::deviationOfSheet(int sheet, const SplineSurface& surface, bool closely) const {
+  const int r = sheetRegion_[sheet];
+  return borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface)
+                     : deviationOf(r, surface, closely);
+}
+
 /// Whether sheets of a region may become these surfaces.
 bool ModelTrimmer::acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const {
   const int r = sheetRegion_[surfaces.begin()->first];
   const double most = std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation);
   return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& ofSheet) {
-    const auto& [sheet, surface] = ofSheet;
-    const ChartDeviation deviation =
-        borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface) : deviationOf(r, surface, false);
-    return deviation.max <= most;
+    return deviationOfSheet(ofSheet.first, ofSheet.second, false).max <= most;
   });
 }
 
@@ -127,12 +132,11 @@ SheetMover ModelTrimmer::mover() const {
 
 std::map<int, std::vector<SplineModel::MovedSurface>> ModelTrimmer::movedRegions() const {
   std::map<int, std::vector<SplineModel::MovedSurface>> result;
-  for (const int r : moved_)
-    for (int c = 0; c < (borders_[r] ? int(fitted_[r]->surfaces.size()) : 1); ++c) {
-      const auto& surface = sheets_[firstSheet_[r] + c].surface;
-      result[r].push_back(
-          {surface, borders_[r] ? deviationOfChart(r, c, surface) : deviationOf(r, surface, true)});
-    }
+  for (int sheet = 0; sheet < int(sheets_.size()); ++sheet) {
+    const auto& surface = sheets_[sheet].surface;
+    if (const int r = sheetRegion_[sheet]; moved_.contains(r))
+      result[r].push_back({surface, deviationOfSheet(sheet, surface, true)});
+  }
   return result;
 }
 

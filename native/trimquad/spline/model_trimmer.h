@@ -110,6 +110,7 @@ class ModelTrimmer {
   auto keptSamples(int r, const ByteKey& key, const Make& make) const;
   ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
   ChartDeviation deviationOfChart(int r, int chart, const SplineSurface& surface) const;
+  ChartDeviation deviationOfSheet(int sheet, const SplineSurface& surface, bool closely) const;
   bool acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const;
   std::vector<SheetBody> bodies() const;
   SheetMover mover() const;

@@ -421,18 +421,12 @@ SplineSurface withKnotV(const SplineSurface& surface, double v, int times) {
 }
 
 SplineSurface restricted(const SplineSurface& surface, const Eigen::AlignedBox2d& part) {
-  SplineSurface result = surface;
-  const auto cut = [&](int axis) {
-    return [&part, axis](const SpaceCurve& line) {
-      return restricted(line, part.min()[axis], part.max()[axis]);
-    };
-  };
-  if (part.min()[0] > surface.firstU() || part.max()[0] < surface.lastU()) {
-    result = rowByRow(result, cut(0));
-    result.closedU = false;
-  }
-  if (part.min()[1] > surface.firstV() || part.max()[1] < surface.lastV())
-    result = columnByColumn(result, cut(1));
+  const Eigen::Vector2d low = part.min(), high = part.max();
+  SplineSurface result =
+      rowByRow(surface, [&](const SpaceCurve& row) { return restricted(row, low[0], high[0]); });
+  result =
+      columnByColumn(result, [&](const SpaceCurve& column) { return restricted(column, low[1], high[1]); });
+  result.closedU = surface.closedU && result.knotsU == surface.knotsU;
   return result;
 }
 

@@ -19,12 +19,9 @@ constexpr double kShortestEdge = 10 * kSmallestTolerance;
 /// A loop along a grid line lies on it up to rounding.
 constexpr double kOnLine = 1e-9;  ///< quads
 
-/// The last knot up to `low` and the first one from `high` on, or the ends of the domain.
+/// The first knot of the span that holds `low` and the last one of that which holds `high`.
 std::array<double, 2> spansAround(const std::vector<double>& knots, int degree, double low, double high) {
-  const auto begin = knots.begin() + degree, end = knots.end() - degree;
-  const auto after = std::upper_bound(begin, end, low + kOnLine);
-  const auto last = std::lower_bound(begin, end, high - kOnLine);
-  return {after == begin ? *begin : *(after - 1), last == end ? *(end - 1) : *last};
+  return {knots[knotSpan(knots, degree, low + kOnLine)], knots[knotSpan(knots, degree, high - kOnLine) + 1]};
 }
 
 /// Takes away what of the surface lies beyond all loops, by whole knot spans: there it may lie on others, and

@@ -23,7 +23,6 @@ using namespace test;
 /// points.
 AnalyticRegion builtWavySheet(double quads) {
   AnalyticRegion sheet = wavySheet(0.5, 0.5 + quads, quads / 6);
-  sheet.columns = sheet.rows = 99;
   sheet.build();
   return sheet;
 }

@@ -1,7 +1,5 @@
 #include "support/analytic_region.h"
 
-#include "support/rounds.h"
-
 namespace trimquad {
 
 void AnalyticRegion::build() {
@@ -61,7 +59,7 @@ Eigen::Vector3d wave(double x, double y) {
 
 AnalyticRegion wavySheet(double first, double last, double quadsPerUnit) {
   AnalyticRegion sheet;
-  sheet.columns = sheet.rows = sample::fineness(99);
+  sheet.columns = sheet.rows = 99;
   sheet.firstU = sheet.firstV = first;
   sheet.lastU = sheet.lastV = last;
   sheet.point = [=, middle = 0.5 * (first + last)](double u, double v) {
