@@ -71,8 +71,7 @@ bool stayNear(const std::vector<SplineSurface>& surfaces, const std::vector<Surf
 
 BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
                         const std::vector<FitPlace>& feet, const std::vector<std::array<int, 3>>& cells,
-                        const FitView& view, const TriangleTree* region, double distance, int threads,
-                        const Progress& progress) {
+                        const FitView& view, int threads, const Progress& progress) {
   enum class Look { Good, Away, TurnedOver };
   struct Found {
     Look look = Look::Good;
@@ -80,7 +79,7 @@ BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::v
   };
   const auto lookAt = [&](const FitPlace& x, const std::array<int, 3>& cell) {
     const auto jet = surfaces[x.chart].jet(x.parameter[0], x.parameter[1]);
-    if (region && region->closest(jet.s).squaredDistance > distance * distance) return Look::Away;
+    if (view.isAway && view.isAway(jet.s)) return Look::Away;
     const Eigen::Vector3d normal = jet.su.cross(jet.sv);
     const bool agrees =
         std::any_of(cell.begin(), cell.end(), [&](int i) { return samples[i].agrees(normal); });

@@ -46,15 +46,17 @@ struct FitView {
   std::function<double(const FitPlace&)> knotInterval;
   /// Whether the region faces that way near a point.
   std::function<bool(const Eigen::Vector3d& p, const Eigen::Vector3d& normal)> facesLikewise;
+  /// Whether a point is farther from the region than the surfaces may be.
+  std::function<bool(const Eigen::Vector3d& p)> isAway;
 };
 
 /// Looks at the surfaces within small triangles between samples, as far apart as their feet are: feet avoid
 /// bulges and folds between them.
-/// \param feet of the samples  \param region  none where nothing can be away from it
+/// \param feet of the samples
+/// \param view  without `isAway` nothing is away
 BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::vector<SurfaceSample>& samples,
                         const std::vector<FitPlace>& feet, const std::vector<std::array<int, 3>>& cells,
-                        const FitView& view, const TriangleTree* region, double distance, int threads,
-                        const Progress& progress);
+                        const FitView& view, int threads, const Progress& progress);
 
 /// As much fairness on the knot rectangles of some charts as the tolerance allows: more where samples on one
 /// and around it are well within, less where they come close to it, but no less than without.

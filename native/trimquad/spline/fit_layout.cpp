@@ -236,6 +236,28 @@ class LayoutFit : public FitRounds {
     });
   }
 
+  /// Twice in each knot interval of the finer side.
+  std::vector<FitPlace> borderPlaces() const override {
+    std::vector<FitPlace> result;
+    for (const auto& border : layout_.borders) {
+      std::set<double> breaks{0, border.length()};
+      for (const int side : {0, 1}) {
+        const int axis = 1 - border.axis(side);
+        const auto& space = space_.charts[border.chart[side]];
+        const double start = border.start[side][axis], way = border.end[side][axis] - start;
+        for (const double x : (axis == 0 ? space.u : space.v).breaks)
+          if (const double s = (x - start) * (way > 0 ? 1 : -1); s > 0 && s < border.length())
+            breaks.insert(s);
+      }
+      const Eigen::Vector2d along = (border.end[0] - border.start[0]) / border.length();
+      for (auto at = breaks.begin(); std::next(at) != breaks.end(); ++at)
+        for (const double part : {0.25, 0.75})
+          result.push_back(
+              {border.chart[0], border.start[0] + (*at + part * (*std::next(at) - *at)) * along});
+    }
+    return result;
+  }
+
   /// The foot of a point on the surfaces, from a place near it, over borders where need be.
   Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const override {
     const auto distance = [&](const FitPlace& x) {

@@ -62,8 +62,10 @@ constexpr double kNearWithMany = 1.5;
 constexpr double kFewTurned = 0.05;
 /// Rounds that are spent on getting rid of folds within what is enough.
 constexpr int kFoldPatience = 8;
-/// Rounds that are spent on getting rid of bulges between samples.
+/// Rounds that are spent on getting rid of bulges between samples; the part of what is enough from which on
+/// they are some, for they are looked for in places.
 constexpr int kBulgePatience = 5;
+constexpr double kAway = 0.95;
 /// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
 /// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
 /// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
@@ -117,7 +119,7 @@ FittedSurface FitRounds::rounds() {
   takeSamples();
   for (rounds_ = 1; rounds_ <= policy_.maxRounds; ++rounds_) {
     if (!solved_) solve();
-    solved_ = false;
+    solved_ = newBulges_ = false;
     if (slides_ && corrections_ > 0 && !deviation_.turnedOver.empty()) stopSliding();
     if (rounds_ == 1) start_ = best_ = deviation_.max;
     best_ = std::min(best_, deviation_.max);
@@ -131,7 +133,7 @@ FittedSurface FitRounds::rounds() {
     if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
     if (kept_ && kept_->bulges > 0 && ++bulgeRounds_ > kBulgePatience) throw unreachable();
     stiffenFolds();
-    if (correctionPays()) {
+    if (newBulges_ || correctionPays()) {
       correct();
     } else {
       if (policy_.takesBack && corrections_ > 0 && deviation_.max > beforeCorrection_.deviation.max)
@@ -315,17 +317,40 @@ void FitRounds::stopSliding() {
   emphasis_.assign(samples_.size(), 1);
 }
 
-/// Around samples where the surface is turned over, or beside which it is: back to the map's parameters.
+/// Around samples where the surface is turned over, or beside which it is, and where it had a bulge that feet
+/// avoid: back to the map's parameters.
 void FitRounds::unfold(std::vector<int> turnedOver, const BetweenFeet& between) {
   for (const int k : between.turnedOverCells)
     turnedOver.insert(turnedOver.end(), cells_[k].begin(), cells_[k].end());
   for (const auto& cell : cellsAround(cells_, turnedOver))
-    for (const int i : cell) {
-      samples_[i].chart = ofMap_[i].chart;
-      samples_[i].parameter = ofMap_[i].parameter;
-      samples_[i].free.setZero();
-      emphasis_[i] = kFoldEmphasis;
-    }
+    for (const int i : cell) returnToMap(i);
+  if (bulgeSpots_.empty()) return;
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    if (std::any_of(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
+          const auto seen = seenFrom(spot.at.chart, ofMap_[i]);
+          return seen && (*seen - spot.at.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
+        }))
+      returnToMap(int(i));
+}
+
+void FitRounds::returnToMap(int sample) {
+  auto& s = samples_[sample];
+  s.chart = ofMap_[sample].chart;
+  s.parameter = ofMap_[sample].parameter;
+  s.free.setZero();
+  emphasis_[sample] = kFoldEmphasis;
+}
+
+/// Whether there are bulges where there were none before.
+bool FitRounds::noteBulges(const std::vector<FitPlace>& bulges) {
+  const std::size_t before = bulgeSpots_.size();
+  for (const auto& x : bulges)
+    if (std::none_of(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
+          return spot.at.chart == x.chart &&
+                 (spot.at.parameter - x.parameter).lpNorm<Eigen::Infinity>() <= 0.5 * spot.reach;
+        }))
+      bulgeSpots_.push_back({x, knotInterval(x)});
+  return bulgeSpots_.size() > before;
 }
 
 /// On new knots: the map's parameters, which are smooth where the map is, or those corrected on the coarser
@@ -457,6 +482,7 @@ bool FitRounds::verified(double tolerance, double folds) {
   }
   between_ = lookBetweenFeet(deviation_, true);
   result_.bulges = int(between_.away.size());
+  newBulges_ = noteBulges(between_.away) || newBulges_;
   for (const auto& x : between_.turnedOver) {
     result_.folded.push_back({result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]), x.chart});
     folds_.push_back(x);
@@ -470,17 +496,29 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
+/// Whether a surface's point is farther from the region than is enough, with some reserve for the places
+/// beside it. Of a true surface the triangles are a coarse picture, so that it is asked where these are far.
+bool FitRounds::isAway(const Eigen::Vector3d& p) const {
+  const double limit = kAway * enough_;
+  if (triangles_.closest(p).squaredDistance <= limit * limit) return false;
+  return !region_.surface || (region_.surface->closest(p).point - p).norm() > limit;
+}
+
 /// What the surfaces are between the feet, where they come close.
 BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation, bool forBulges) const {
   if (deviation.max > kClose * tolerance_) return {};
-  const FitView view{
+  FitView view{
       [&](int chart, const FitPlace& x) { return seenFrom(chart, x); },
-      [&](const FitPlace& x) { return isInChart(x); }, [&](const FitPlace& x) { return knotInterval(x); },
-      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); }};
-  // Of a true surface the triangles are a coarse picture.
-  const TriangleTree* triangles = forBulges && !region_.surface ? &triangles_ : nullptr;
-  return betweenFeet(result_.surfaces, samples_, feet_, cells_, view, triangles, enough_, threads_,
-                     progress_);
+      [&](const FitPlace& x) { return isInChart(x); },
+      [&](const FitPlace& x) { return knotInterval(x); },
+      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); },
+      {}};
+  if (forBulges) view.isAway = [&](const Eigen::Vector3d& p) { return isAway(p); };
+  BetweenFeet result = betweenFeet(result_.surfaces, samples_, feet_, cells_, view, threads_, progress_);
+  if (forBulges)
+    for (const FitPlace& x : borderPlaces())
+      if (isAway(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]))) result.away.push_back(x);
+  return result;
 }
 
 void FitRounds::measureFit() {

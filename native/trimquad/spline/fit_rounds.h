@@ -79,6 +79,8 @@ class FitRounds {
   }
   virtual bool isInChart(const FitPlace&) const { return true; }
   virtual bool isOnCrease(const FitPlace&) const { return false; }
+  /// The same: places all along borders, where no small triangle between samples lies.
+  virtual std::vector<FitPlace> borderPlaces() const { return {}; }
   /// By chart. \param emphasis by sample: factor of its weight
   std::vector<std::vector<Datum>> dataOf(const std::vector<SurfaceSample>& samples,
                                          const std::vector<double>& emphasis) const;
@@ -127,6 +129,7 @@ class FitRounds {
   void keepSheetsApart();
   void solve();
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
+  bool isAway(const Eigen::Vector3d& p) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
@@ -139,6 +142,8 @@ class FitRounds {
   void smoothParameters();
   void stopSliding();
   void unfold(std::vector<int> turnedOver, const BetweenFeet& between);
+  void returnToMap(int sample);
+  bool noteBulges(const std::vector<FitPlace>& bulges);
   void chooseParameters();
   void keepIfEnough();
   bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
@@ -166,6 +171,12 @@ class FitRounds {
   std::vector<SplineSpace> sampledOver_;  ///< by chart of several surfaces: over whose knots `samples_` are
   std::optional<FittedSurface> kept_;     ///< within what is enough
   FoldSpots foldSpots_;
+  /// Where surfaces had bulges between feet.
+  struct BulgeSpot {
+    FitPlace at;
+    double reach;  ///< quads, in both directions
+  };
+  std::vector<BulgeSpot> bulgeSpots_;
   Deviation deviation_, previous_;
   BetweenFeet between_;                                    ///< the feet of `samples_`
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over
@@ -182,9 +193,10 @@ class FitRounds {
   };
   Closest closest_, closestClean_;  ///< the latter among those that are turned over nowhere
   double start_ = 0, best_ = 0, atRefinement_ = std::numeric_limits<double>::infinity();
-  bool slides_;            ///< samples whose parameters are their feet, along the surface
-  bool solved_ = false;    ///< the surfaces and their deviation belong to the present knots and parameters
-  bool thorough_ = false;  ///< the worst places alone did not bring the deviation down
+  bool slides_;             ///< samples whose parameters are their feet, along the surface
+  bool solved_ = false;     ///< the surfaces and their deviation belong to the present knots and parameters
+  bool newBulges_ = false;  ///< found in this round where there were none before
+  bool thorough_ = false;   ///< the worst places alone did not bring the deviation down
   int rounds_ = 0, corrections_ = 0, stiffened_ = 0, idle_ = 0, foldRounds_ = 0, bulgeRounds_ = 0;
 };
 

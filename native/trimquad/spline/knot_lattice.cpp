@@ -2,52 +2,89 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace trimquad {
 namespace {
 
 constexpr double kMostParts = 64;  ///< of a segment
+/// How many times wider than the one beside it a part of a lattice's line is at most.
+constexpr double kGrading = 4;
 
 double doubledArea(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Where the lattice's lines of one direction are, from the first one not below `low` to the last below
-/// `high`.
-struct LatticeLine {
-  int index;
-  double at, width;
-};
-
-std::vector<LatticeLine> latticeLines(const SplineLine& line, double low, double high, int across) {
-  std::vector<LatticeLine> result;
-  for (int span = line.spanOf(low), last = line.spanOf(high); span <= last; ++span)
-    for (int i = 0; i < across; ++i) {
-      const double width = line.width(span) / across, at = line.breaks[span] + (i + 0.5) * width;
-      if (at >= low && at < high) result.push_back({span * across + i, at, width});
-    }
+/// Divides the parts that are wider than that many times the one before them, more closely towards it.
+std::vector<double> graded(const std::vector<double>& ends, double firstLimit) {
+  std::vector<double> result{ends.front()};
+  double limit = firstLimit;
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    const double start = ends[i - 1], width = ends[i] - start;
+    int halvings = 0;
+    while (width * std::exp2(-halvings) > limit) ++halvings;
+    for (; halvings > 0; --halvings) result.push_back(start + width * std::exp2(-halvings));
+    result.push_back(ends[i]);
+    limit = kGrading * (result.back() - result[result.size() - 2]);
+  }
   return result;
+}
+
+std::vector<double> mirrored(std::vector<double> ends) {
+  std::reverse(ends.begin(), ends.end());
+  for (double& x : ends) x = -x;
+  return ends;
+}
+
+/// The ends of a line's parts.
+std::vector<double> parts(const SplineLine& line, int across) {
+  std::vector<double> ends;
+  for (int span = 0; span < line.spans(); ++span)
+    for (int i = 0; i < across; ++i) ends.push_back(line.breaks[span] + i * line.width(span) / across);
+  ends.push_back(line.breaks.back());
+  // Across a closed line's end as well.
+  const double none = std::numeric_limits<double>::infinity();
+  const auto grade = [&] {
+    ends = graded(ends, line.closed ? kGrading * (ends.back() - ends[ends.size() - 2]) : none);
+  };
+  grade();
+  ends = mirrored(std::move(ends));
+  grade();
+  return mirrored(std::move(ends));
+}
+
+/// The parts whose middles lie in that range, from the first to the one after the last.
+std::array<int, 2> partsIn(const std::vector<double>& ends, double low, double high) {
+  const auto firstFrom = [&](double x) {
+    int i = int(std::upper_bound(ends.begin(), ends.end(), x) - ends.begin()) - 1;
+    i = std::clamp(i, 0, int(ends.size()) - 1);
+    if (i + 1 < int(ends.size()) && 0.5 * (ends[i] + ends[i + 1]) < x) ++i;
+    return i;
+  };
+  return {firstFrom(low), firstFrom(high)};
 }
 
 }  // namespace
 
-std::vector<LatticePoint> latticePoints(const SplineSpace& space,
-                                        const std::array<Eigen::Vector2d, 3>& triangle, int across) {
+KnotLattice::KnotLattice(const SplineSpace& space, int across)
+    : u_(parts(space.u, across)), v_(parts(space.v, across)) {}
+
+std::vector<LatticePoint> KnotLattice::in(const std::array<Eigen::Vector2d, 3>& triangle) const {
   const Eigen::Vector2d low = triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2]),
                         high = triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2]);
   const double area = doubledArea(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   std::vector<LatticePoint> result;
   if (!(area > 0)) return result;
-  const auto columns = latticeLines(space.u, low[0], high[0], across);
-  for (const auto& row : latticeLines(space.v, low[1], high[1], across))
-    for (const auto& column : columns) {
-      const Eigen::Vector2d x(column.at, row.at);
+  const auto columns = partsIn(u_, low[0], high[0]), rows = partsIn(v_, low[1], high[1]);
+  for (int j = rows[0]; j < rows[1]; ++j)
+    for (int i = columns[0]; i < columns[1]; ++i) {
+      const Eigen::Vector2d x(0.5 * (u_[i] + u_[i + 1]), 0.5 * (v_[j] + v_[j + 1]));
       Eigen::Vector3d b;
       for (int k = 0; k < 3; ++k)
         b[k] = doubledArea(triangle[(k + 2) % 3] - triangle[(k + 1) % 3], x - triangle[(k + 1) % 3]) / area;
       if (b.minCoeff() < 0) continue;
-      result.push_back({{column.index, row.index}, b, column.width * row.width});
+      result.push_back({{i, j}, b, (u_[i + 1] - u_[i]) * (v_[j + 1] - v_[j])});
     }
   return result;
 }

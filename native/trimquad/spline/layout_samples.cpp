@@ -210,6 +210,9 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
     if (barycentric.maxCoeff() < 1) onTriangles.push_back(int(samples.size()));
     samples.push_back(sample(f, barycentric));
   };
+  std::array<std::vector<KnotLattice>, 2> knots;  // by whether finer, and chart
+  for (const auto& chart : space.charts)
+    for (const int fine : {0, 1}) knots[fine].emplace_back(chart, fine ? 2 * across : across);
   std::vector<std::array<int, 3>> lattice;
   for (const auto f : mesh.faces()) {
     if (f.idx() % 256 == 0) progress.check();
@@ -217,7 +220,7 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
       const Corners c = corners(f, toChart);
       // Towards a singularity the parameters drift apart, so there the lattice is twice as fine.
       const bool fine = isNearSingularity(chart, c, space.charts[chart]);
-      for (const auto& point : latticePoints(space.charts[chart], c, fine ? 2 * across : across)) {
+      for (const auto& point : knots[fine][chart].in(c)) {
         const Eigen::Vector2d x = at(f, point.barycentric);
         const auto& piece = layout_.pieceAt(f, x);
         if (piece.chart != chart || piece.toChart != toChart) continue;

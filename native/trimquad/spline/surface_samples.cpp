@@ -112,6 +112,7 @@ std::vector<SurfaceSample> SurfaceSamples::make(const SplineSpace& space, bool c
   cells_.clear();
   if (!control) samples = vertices_;
   const int first = int(samples.size());
+  const KnotLattice knots(space, across);
   std::vector<std::array<int, 3>> lattice;
   for (const auto f : mesh_.faces()) {
     if (f.idx() % 256 == 0) progress.check();
@@ -123,7 +124,7 @@ std::vector<SurfaceSample> SurfaceSamples::make(const SplineSpace& space, bool c
       if (shift != start && period_ == 0) continue;
       Corners x = c;
       for (auto& corner : x) corner[0] += shift;
-      for (const auto& point : latticePoints(space, x, across)) {
+      for (const auto& point : knots.in(x)) {
         samples.push_back(sample(h, point.barycentric));
         samples.back().weight = (control ? 1 : 1 - kVertexShare) * point.area;
         lattice.push_back({0, point.index[0], point.index[1]});

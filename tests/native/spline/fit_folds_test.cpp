@@ -83,8 +83,10 @@ struct Zigzag {
   FitView view{[](int chart, const FitPlace& x) {
                  return x.chart == chart ? std::optional(x.parameter) : std::nullopt;
                },
-               [](const FitPlace&) { return true; }, [](const FitPlace&) { return 0.25; },
-               [](const Eigen::Vector3d&, const Eigen::Vector3d&) { return false; }};
+               [](const FitPlace&) { return true; },
+               [](const FitPlace&) { return 0.25; },
+               [](const Eigen::Vector3d&, const Eigen::Vector3d&) { return false; },
+               {}};
 
   Zigzag() {
     for (int i = 0; i <= 16; ++i) space.u.breaks.push_back(i / 4.0);
@@ -105,9 +107,7 @@ struct Zigzag {
       feet.push_back({0, x});
     }
   }
-  BetweenFeet look() const {
-    return betweenFeet(surfaces, samples, feet, cells, view, nullptr, 0, 1, Progress());
-  }
+  BetweenFeet look() const { return betweenFeet(surfaces, samples, feet, cells, view, 1, Progress()); }
 };
 
 TEST(FitFolds, aSurfaceThatRunsToAndFroBetweenFeetIsSeen) {
@@ -147,8 +147,11 @@ TEST(FitFolds, bulgesBetweenFeetOnBothSidesOfASeamAreSeen) {
     for (auto& s : tube.samples) s.normal = s.meshNormal = Eigen::Vector3d::UnitX();
     std::vector<FitPlace> feet;
     for (const auto& s : tube.samples) feet.push_back({0, s.parameter});
-    const auto found = betweenFeet(tube.surfaces, tube.samples, feet, tube.cells, Zigzag().view, &tube.region,
-                                   0.05, 1, Progress());
+    FitView view = Zigzag().view;
+    view.isAway = [&](const Eigen::Vector3d& p) {
+      return tube.region.closest(p).squaredDistance > 0.05 * 0.05;
+    };
+    const auto found = betweenFeet(tube.surfaces, tube.samples, feet, tube.cells, view, 1, Progress());
     EXPECT_EQ(found.away.size(), bulge > 0 ? 1u : 0u);
     EXPECT_TRUE(found.turnedOver.empty());
   }
