@@ -4,6 +4,7 @@ import time
 from dataclasses import replace
 
 from .cuts import Cut
+from .deviation import worst_place
 from .error import input_error, system_error
 from .freecad_shape import shape_from_bytes
 from .joining import check, trim
@@ -307,6 +308,12 @@ def _warn_of_regions(result):
                 f"region '{item.name}': the B-spline surfaces have small folds within the tolerance, at "
                 f"{len(item.fitted.folded)} of {item.fitted.samples} places that were looked at (the first at {place}); use a "
                 "smaller edge length"
+            )
+        if item.fitted is not None and item.fitted.max_deviation > result.options.tolerance:
+            place = ", ".join(f"{x:.6g}" for x in worst_place(item))
+            result.warnings.append(
+                f"region '{item.name}': the B-spline surfaces are up to {item.fitted.max_deviation:.3g} away, more than the "
+                f"tolerance {result.options.tolerance:.3g}, in narrow bulges (the farthest at {place}); use a smaller edge length"
             )
         given_up = item.field and item.region.features["aligned_edges"] - item.field.aligned_edges
         if given_up:

@@ -64,7 +64,7 @@ constexpr double kFewTurned = 0.05;
 constexpr int kFoldPatience = 8;
 /// Rounds that are spent on getting rid of bulges between samples; the part of what is enough from which on
 /// they are some, for they are looked for in places.
-constexpr int kBulgePatience = 5;
+constexpr int kBulgePatience = 10;
 constexpr double kAway = 0.95;
 /// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
 /// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
@@ -328,9 +328,13 @@ void FitRounds::unfold(std::vector<int> turnedOver, const BetweenFeet& between) 
   for (std::size_t i = 0; i < samples_.size(); ++i)
     if (std::any_of(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
           const auto seen = seenFrom(spot.at.chart, ofMap_[i]);
-          return seen && (*seen - spot.at.parameter).lpNorm<Eigen::Infinity>() <= spot.reach;
+          return seen && holds(spot, *seen, 1);
         }))
       returnToMap(int(i));
+}
+
+bool FitRounds::holds(const BulgeSpot& spot, const Eigen::Vector2d& x, double part) {
+  return ((x - spot.at.parameter).cwiseAbs().array() <= part * spot.reach.array()).all();
 }
 
 void FitRounds::returnToMap(int sample) {
@@ -346,10 +350,9 @@ bool FitRounds::noteBulges(const std::vector<FitPlace>& bulges) {
   const std::size_t before = bulgeSpots_.size();
   for (const auto& x : bulges)
     if (std::none_of(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
-          return spot.at.chart == x.chart &&
-                 (spot.at.parameter - x.parameter).lpNorm<Eigen::Infinity>() <= 0.5 * spot.reach;
+          return spot.at.chart == x.chart && holds(spot, x.parameter, 0.5);
         }))
-      bulgeSpots_.push_back({x, knotInterval(x)});
+      bulgeSpots_.push_back({x, knotIntervals(x)});
   return bulgeSpots_.size() > before;
 }
 
@@ -483,6 +486,16 @@ bool FitRounds::verified(double tolerance, double folds) {
   between_ = lookBetweenFeet(deviation_, true);
   result_.bulges = int(between_.away.size());
   newBulges_ = noteBulges(between_.away) || newBulges_;
+  for (const auto& x : between_.away) {
+    const Eigen::Vector3d p = result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]);
+    const double distance = away(p);
+    auto& chart = result_.deviations[x.chart];
+    if (distance > chart.max) {
+      chart.max = distance;
+      chart.where = p;
+    }
+    result_.maxDeviation = std::max(result_.maxDeviation, distance);
+  }
   for (const auto& x : between_.turnedOver) {
     result_.folded.push_back({result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]), x.chart});
     folds_.push_back(x);
@@ -496,12 +509,14 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
-/// Whether a surface's point is farther from the region than is enough, with some reserve for the places
-/// beside it. Of a true surface the triangles are a coarse picture, so that it is asked where these are far.
-bool FitRounds::isAway(const Eigen::Vector3d& p) const {
+/// A surface's point's distance from the region where that is more than is enough, with some reserve for the
+/// places beside it; 0 elsewhere. Of a true surface the triangles are a coarse picture, so that it is asked
+/// where these are far.
+double FitRounds::away(const Eigen::Vector3d& p) const {
   const double limit = kAway * enough_;
-  if (triangles_.closest(p).squaredDistance <= limit * limit) return false;
-  return !region_.surface || (region_.surface->closest(p).point - p).norm() > limit;
+  double distance = std::sqrt(triangles_.closest(p).squaredDistance);
+  if (distance > limit && region_.surface) distance = (region_.surface->closest(p).point - p).norm();
+  return distance > limit ? distance : 0;
 }
 
 /// What the surfaces are between the feet, where they come close.
@@ -513,11 +528,11 @@ BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation, bool forBulge
       [&](const FitPlace& x) { return knotInterval(x); },
       [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); },
       {}};
-  if (forBulges) view.isAway = [&](const Eigen::Vector3d& p) { return isAway(p); };
+  if (forBulges) view.isAway = [&](const Eigen::Vector3d& p) { return away(p) > 0; };
   BetweenFeet result = betweenFeet(result_.surfaces, samples_, feet_, cells_, view, threads_, progress_);
   if (forBulges)
     for (const FitPlace& x : borderPlaces())
-      if (isAway(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]))) result.away.push_back(x);
+      if (away(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1])) > 0) result.away.push_back(x);
   return result;
 }
 
@@ -526,9 +541,9 @@ void FitRounds::measureFit() {
   between_ = lookBetweenFeet(deviation_, false);
 }
 
-double FitRounds::knotInterval(const FitPlace& x) const {
+Eigen::Vector2d FitRounds::knotIntervals(const FitPlace& x) const {
   const SplineLine &u = space(x.chart).u, &v = space(x.chart).v;
-  return std::max(u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1])));
+  return {u.width(u.spanOf(x.parameter[0])), v.width(v.spanOf(x.parameter[1]))};
 }
 
 /// Deviation above which a sample asks for knots.

@@ -69,8 +69,9 @@ class FitRounds {
     FitPlace at, start;    ///< `start`: where the search began, as seen from the foot's chart
     bool limited = false;  ///< a crease ended the way to it
   };
-  /// The longer side of a place's knot rectangle, quads.
-  double knotInterval(const FitPlace& x) const;
+  /// The sides of a place's knot rectangle, quads; the longer one.
+  Eigen::Vector2d knotIntervals(const FitPlace& x) const;
+  double knotInterval(const FitPlace& x) const { return knotIntervals(x).maxCoeff(); }
   /// The foot of a point, from a place near it.
   virtual Foot foot(const Eigen::Vector3d& p, const FitPlace& from) const = 0;
   /// Of several surfaces: FitView::seenFrom, isInChart; whether a place lies on a crease that they follow.
@@ -123,13 +124,19 @@ class FitRounds {
     BetweenFeet between;
   };
 
+  /// Where surfaces had bulges between feet.
+  struct BulgeSpot {
+    FitPlace at;
+    Eigen::Vector2d reach;  ///< quads, along u and v
+  };
+
   FittedSurface rounds();
   void continueFrom(const FittedSurface& fitted);
   void takeSamples();
   void keepSheetsApart();
   void solve();
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
-  bool isAway(const Eigen::Vector3d& p) const;
+  double away(const Eigen::Vector3d& p) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
@@ -143,6 +150,7 @@ class FitRounds {
   void stopSliding();
   void unfold(std::vector<int> turnedOver, const BetweenFeet& between);
   void returnToMap(int sample);
+  static bool holds(const BulgeSpot& spot, const Eigen::Vector2d& x, double part);
   bool noteBulges(const std::vector<FitPlace>& bulges);
   void chooseParameters();
   void keepIfEnough();
@@ -171,11 +179,6 @@ class FitRounds {
   std::vector<SplineSpace> sampledOver_;  ///< by chart of several surfaces: over whose knots `samples_` are
   std::optional<FittedSurface> kept_;     ///< within what is enough
   FoldSpots foldSpots_;
-  /// Where surfaces had bulges between feet.
-  struct BulgeSpot {
-    FitPlace at;
-    double reach;  ///< quads, in both directions
-  };
   std::vector<BulgeSpot> bulgeSpots_;
   Deviation deviation_, previous_;
   BetweenFeet between_;                                    ///< the feet of `samples_`

@@ -38,7 +38,8 @@ struct FittedSurface {
   SplineSurface surface;
   std::optional<Layout> layout;  ///< where there are several charts; then `chart` and `surface` are empty
   std::vector<SplineSurface> surfaces;        ///< by chart of the layout
-  double maxDeviation = 0, rmsDeviation = 0;  ///< over independent samples of the region, model units
+  /// Over independent samples of the region, model units; the largest over bulges between them as well.
+  double maxDeviation = 0, rmsDeviation = 0;
   std::vector<ChartDeviation> deviations;     ///< by chart, one where there is a single surface
   /// Samples, those of the fit and independent ones, where a surface is turned over in a small fold, though
   /// it lies within the tolerance there; and how many samples there are.
@@ -48,8 +49,8 @@ struct FittedSurface {
   };
   std::vector<Fold> folded;
   int samples = 0;
-  /// Places between samples where the surfaces are farther away than what is enough. There are none but where
-  /// no surfaces without are found.
+  /// Places between samples where the surfaces are farther away than nearly all of what is enough. There are
+  /// none but where no surfaces without are found.
   int bulges = 0;
   int rounds = 0;
   /// Of several surfaces: what they minimise.
