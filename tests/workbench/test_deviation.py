@@ -131,3 +131,20 @@ def test_the_picture_is_written_and_shows_what_lies_farther_away(sheet, tmp_path
     result.options.tolerance = 0.2 * result.regions[0].fitted.max_deviation
     result.write(str(tmp_path))
     assert red() > before + 1000
+
+
+def test_surfaces_farther_away_than_the_tolerance_are_said_with_the_place(converted):
+    import sys
+
+    result, _ = converted("sheet")
+    (region,) = result.regions
+    warnings, tolerance = list(result.warnings), result.options.tolerance
+    try:
+        sys.modules["trimquad.convert"]._warn_of_regions(result)
+        assert not any("in narrow bulges" in line for line in result.warnings[len(warnings):])
+        result.options.tolerance = region.fitted.max_deviation / 2
+        sys.modules["trimquad.convert"]._warn_of_regions(result)
+        (line,) = [line for line in result.warnings if "in narrow bulges" in line]
+        assert f"{region.fitted.max_deviation:.3g} away" in line and " at " in line
+    finally:
+        result.warnings[:], result.options.tolerance = warnings, tolerance

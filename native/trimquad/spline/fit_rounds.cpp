@@ -488,11 +488,12 @@ bool FitRounds::verified(double tolerance, double folds) {
   newBulges_ = noteBulges(between_.away) || newBulges_;
   for (const auto& x : between_.away) {
     const Eigen::Vector3d p = result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]);
-    const double distance = away(p);
+    const Eigen::Vector3d closest = farFrom(p).value_or(p);
+    const double distance = (closest - p).norm();
     auto& chart = result_.deviations[x.chart];
     if (distance > chart.max) {
       chart.max = distance;
-      chart.where = p;
+      chart.where = closest;
     }
     result_.maxDeviation = std::max(result_.maxDeviation, distance);
   }
@@ -509,14 +510,16 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
-/// A surface's point's distance from the region where that is more than is enough, with some reserve for the
-/// places beside it; 0 elsewhere. Of a true surface the triangles are a coarse picture, so that it is asked
-/// where these are far.
-double FitRounds::away(const Eigen::Vector3d& p) const {
+/// The region's point closest to one of a surface that is farther away than is enough, with some reserve for
+/// the places beside it; none for others. Of a true surface the triangles are a coarse picture, so that it is
+/// asked where these are far.
+std::optional<Eigen::Vector3d> FitRounds::farFrom(const Eigen::Vector3d& p) const {
   const double limit = kAway * enough_;
-  double distance = std::sqrt(triangles_.closest(p).squaredDistance);
-  if (distance > limit && region_.surface) distance = (region_.surface->closest(p).point - p).norm();
-  return distance > limit ? distance : 0;
+  const auto hit = triangles_.closest(p);
+  if (hit.squaredDistance <= limit * limit) return {};
+  const Eigen::Vector3d closest = region_.surface ? region_.surface->closest(p).point : hit.point;
+  if ((closest - p).norm() <= limit) return {};
+  return closest;
 }
 
 /// What the surfaces are between the feet, where they come close.
@@ -528,11 +531,11 @@ BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation, bool forBulge
       [&](const FitPlace& x) { return knotInterval(x); },
       [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); },
       {}};
-  if (forBulges) view.isAway = [&](const Eigen::Vector3d& p) { return away(p) > 0; };
+  if (forBulges) view.isAway = [&](const Eigen::Vector3d& p) { return farFrom(p).has_value(); };
   BetweenFeet result = betweenFeet(result_.surfaces, samples_, feet_, cells_, view, threads_, progress_);
   if (forBulges)
     for (const FitPlace& x : borderPlaces())
-      if (away(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1])) > 0) result.away.push_back(x);
+      if (farFrom(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]))) result.away.push_back(x);
   return result;
 }
 

@@ -136,7 +136,7 @@ class FitRounds {
   void keepSheetsApart();
   void solve();
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
-  double away(const Eigen::Vector3d& p) const;
+  std::optional<Eigen::Vector3d> farFrom(const Eigen::Vector3d& p) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
