@@ -104,6 +104,9 @@ std::optional<std::vector<std::array<int, 3>>> triangulatePolygon(std::span<cons
   const int n = int(polygon.size());
   if (n == 3) return {{{0, 1, 2}}};
   const std::vector<Vector2d> image = meanPlaneImage(polygon);
+  if (n == 4 && !image.empty() && cross(image[0], image[1], image[2]) > 0 &&
+      cross(image[0], image[2], image[3]) > 0)
+    return {{{0, 1, 2}, {0, 2, 3}}};
   if (!image.empty()) return EarClipping(polygon, image).run();
   std::vector<std::array<int, 3>> fan;
   for (int i = 1; i + 1 < n; ++i) fan.push_back({0, i, i + 1});

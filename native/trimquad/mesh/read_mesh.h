@@ -18,7 +18,7 @@ struct MeshFile {
 
 /// Reads Wavefront OBJ, Geomview OFF (ascii; colours, normals and texture coordinates are skipped), PLY
 /// (ascii and both binary forms) and STL (ascii and binary; bitwise equal corners become one vertex). The
-/// extension, in any case, decides which. Polygons are triangulated along their shortest diagonals inside.
+/// extension, in any case, decides which. Polygons are triangulated (triangulatePolygon).
 /// Vertex order is kept.
 ///
 /// Guarantees on return: at least one triangle, every index in range, every coordinate finite. Numbers are

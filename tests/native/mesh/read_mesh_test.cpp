@@ -185,6 +185,20 @@ TEST(ReadMesh, polygonsKeepAreaAndOrientation) {
   }
 }
 
+TEST(ReadMesh, aQuadThatIsNotFlatIsDividedFromItsFirstCornerWhereThatLiesInside) {
+  using Triangles = std::vector<std::array<int, 3>>;
+  const std::vector<Eigen::Vector3d> saddle{{0, 0, 1}, {3, 1, 0}, {4, 4, 1}, {1, 3, 0}},
+      dart{{0, 0, 0}, {2, -1, 0}, {0.5, 0, 0.3}, {2, 1, 0}}, turned{dart[1], dart[2], dart[3], dart[0]};
+  EXPECT_EQ(triangulatePolygon(saddle), (Triangles{{0, 1, 2}, {0, 2, 3}})) << "the longer diagonal";
+  EXPECT_EQ(triangulatePolygon(dart), (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  const auto other = triangulatePolygon(turned);
+  ASSERT_TRUE(other);
+  for (const auto& triangle : *other)
+    EXPECT_TRUE(std::count(triangle.begin(), triangle.end(), 1) &&
+                std::count(triangle.begin(), triangle.end(), 3))
+        << "from the reflex corner";
+}
+
 TEST(ReadMesh, aCrossingPolygonIsRefused) {
   EXPECT_TRUE(holds(complaint("a.obj", "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n"), "crosses itself"));
 }
