@@ -33,7 +33,7 @@ def cut_failed(result, progress) -> List[Tuple[int, object]]:
     Returns the numbers and the RegionResults of the parts, which are still to be converted. Only a CAD model with
     `features` trim is cut: otherwise its edges are to lie inside the surfaces.
     """
-    if not _may_cut(result):
+    if not may_cut(result):
         return []
     parts = {}
     for index, item in enumerate(result.regions):
@@ -48,7 +48,7 @@ def cut_failed(result, progress) -> List[Tuple[int, object]]:
 def bends_sharply(item, result, progress):
     """Whether a region can be cut where it bends sharply and that was not tried yet. If so, cut_failed() does it once the
     region has an error."""
-    if not _may_cut(result) or item.cuts_left < len(CUTS):
+    if not may_cut(result) or item.cuts_left < len(CUTS):
         return False
     item.parts = _next_parts(item, result.regions.index(item), result, progress)
     return item.parts is not None
@@ -56,14 +56,15 @@ def bends_sharply(item, result, progress):
 
 def has_parts(item, result, progress):
     """Whether a region will be cut if it fails."""
-    if not (_may_cut(result) and item.cuts_left):
+    if not (may_cut(result) and item.cuts_left):
         return False
     if item.has_parts is None:
         item.has_parts = _parts(item, result.regions.index(item), None, False, result, progress) is not None
     return item.has_parts
 
 
-def _may_cut(result):
+def may_cut(result):
+    """Whether regions of a conversion are cut where they fail."""
     return result.source.kind == "cad" and result.options.features == "trim"
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple, Tuple
 
 import numpy
 
-from .cuts import CUTS, cut_failed, has_parts
+from .cuts import CUTS, cut_failed, has_parts, may_cut
 from .error import Error, system_error
 from .native import load
 from .polygons import Polygons
@@ -22,6 +22,10 @@ MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map; several only
 # for a single one.
 MOST_WORK_BEFORE_CHOICE = 8e6
+# Poles that surfaces over a region of several CAD faces may take, for each of the faces' own and in any case, where the
+# tolerance is 1e-4 of the diagonal; with others they grow like its inverse root, as those of smooth surfaces do. What takes
+# more follows joints between the faces that are not smooth enough, and is simpler when cut along them.
+MOST_POLES_OF_CAD, FEWEST_LIMIT = 25, 5000
 # Times that the edges of a region's quads are halved where it is too narrow for them.
 HALVINGS = 3
 # Where surfaces cannot be fitted, holes so many quads around at most are bridged for them.
@@ -78,6 +82,7 @@ class RegionResult:
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
         self.fill_holes = 0.0  # holes shorter than this are bridged
+        self.most_poles = None  # that its surfaces may take, where there is a limit
         self.wanted_singularities = "weighed"  # which ones the map is to have, as OtherMap.singularities
         self.refits = self.field_edits = 0
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
@@ -193,6 +198,7 @@ def _map_region(item, index, result, progress):
     """The stages of one region, with shorter edges where it is too narrow for quads as large as they are wanted. The
     first Error that these do not cure ends it and is kept in the region."""
     item.edge_length, item.fill_holes = result.options.edge_length, result.options.fill_holes
+    item.most_poles = _most_poles(index, result)
     for halving in range(HALVINGS + 1):
         try:
             _try_region(item, index, result, progress)
@@ -219,6 +225,15 @@ def _map_region(item, index, result, progress):
         except MemoryError as error:
             item.error = system_error("memory", error)
         return
+
+
+def _most_poles(index, result):
+    """The limit for the surfaces over a region that can be cut between CAD faces, or None."""
+    poles = load().cad_poles(result.model, index) if may_cut(result) else None
+    if poles is None:
+        return None
+    finer = (1e-4 * result.model.diagonal / result.options.tolerance) ** 0.5
+    return int(finer * max(FEWEST_LIMIT, MOST_POLES_OF_CAD * poles))
 
 
 def fit_undivided(result, progress):
@@ -297,6 +312,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
         native.place_region(result.model, index, region)
         other = RegionResult(result.model.regions[index])
         other.edge_length, other.guidance = item.edge_length, item.guidance
+        other.most_poles = item.most_poles
         other.wanted_singularities = way.singularities
         other.fill_holes = max(item.fill_holes, SMALL_HOLE * item.edge_length if way.behind_small_holes else 0)
         try:
@@ -451,7 +467,7 @@ def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0,
         enough=tolerance if only and part != 1 else ENOUGH * result.options.tolerance,
         smallest_rectangle=smallest_rectangle,
         slides=slides,
-        max_poles=None if part == 1 else MORE_POLES * item.fitted.control_points + FEW_POLES,
+        max_poles=item.most_poles if part == 1 else MORE_POLES * item.fitted.control_points + FEW_POLES,
     )
     try:
         return native.fit_surface(item.fitted_from.mapped_region, item.fitted_from.grid, fit_options, progress)

@@ -81,6 +81,8 @@ void bindBrep(py::module_& m) {
       Released(),
       "A region cut along its smooth inner edges: with `creases` those where it bends sharply, else around "
       "the CAD faces at `place`, or between all faces where it is None. None where there is nothing to cut.");
+  m.def("cad_poles", &cadPoles, py::arg("model"), py::arg("region"),
+        "Control points of a region's CAD faces, 16 for each at least; None where there are not several.");
   m.def("with_parts", &withParts, py::arg("model"), py::arg("parts"), Released(),
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());

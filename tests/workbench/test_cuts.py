@@ -271,3 +271,21 @@ def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, rad
         assert [r.refits for r in result.regions] == [0, 0] and len(result.shape.Faces) == 2
     else:
         assert not result.cuts and [r.refits for r in result.regions] == [1]
+
+
+def test_a_surface_with_many_more_poles_than_the_faces_under_it_gives_way_to_theirs(monkeypatch):
+    from trimquad.native import load
+
+    whole = converted()
+    assert not whole.cuts and load().cad_poles(whole.model, 0) == 8 * 16
+    limit, poles = regions._most_poles(0, whole), whole.regions[0].fitted.control_points
+    tolerance = whole.options.tolerance / whole.model.diagonal
+    assert limit == int(5000 * math.sqrt(1e-4 / tolerance)) and poles < limit
+    monkeypatch.setattr(regions, "FEWEST_LIMIT", 1)
+    monkeypatch.setattr(regions, "MOST_POLES_OF_CAD", regions.MOST_POLES_OF_CAD * poles / 2 / (limit * 25 * 128 / 5000))
+    result = converted()
+    assert not result.failed and result.cuts[0].error.stage == "fit" and "poles" in str(result.cuts[0].error)
+    assert len(result.shape.Faces) > 1 and result.shape.isValid()
+    # A single face has no limit: there is nothing to give way to.
+    singles = [k for k in range(len(result.regions)) if load().cad_poles(result.model, k) is None]
+    assert singles and all(regions._most_poles(k, result) is None for k in singles)

@@ -11,10 +11,15 @@
 #include "trimquad/brep/meshed_regions.h"
 #include "trimquad/brep/occt_guard.h"
 
+#include <Geom_BSplineSurface.hxx>
+#include <Geom_RectangularTrimmedSurface.hxx>
+
 namespace trimquad {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr int kFewestPoles = 16;  ///< that a face counts for
 
 /// A CAD edge inside a region, where the region is not open.
 struct InnerEdge {
@@ -235,6 +240,23 @@ std::optional<RegionParts> regionParts(const Model& model, int region, const Cut
                    if (edges.empty()) return {};
                    return partsAlong(model, region, std::move(edges), seams, progress);
                  });
+}
+
+std::optional<int> cadPoles(const Model& model, int region) {
+  if (!model.origin) return {};
+  std::set<int> faces;
+  const WeldedShape& shape = *model.origin->shape;
+  for (const int t : model.origin->triangles[region]) faces.insert(shape.mesh.triangles[t].face);
+  if (faces.size() < 2) return {};
+  int poles = 0;
+  for (const int f : faces) {
+    Handle(Geom_Surface) surface = shape.cad.faces[f].surface;
+    while (const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface))
+      surface = trimmed->BasisSurface();
+    const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
+    poles += std::max(kFewestPoles, spline.IsNull() ? 0 : spline->NbUPoles() * spline->NbVPoles());
+  }
+  return poles;
 }
 
 Model withParts(const Model& model, const std::map<int, const RegionParts*>& parts) {

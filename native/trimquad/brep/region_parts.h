@@ -24,7 +24,7 @@ struct RegionParts {
 
 /// Where a region is cut.
 struct CutPlace {
-  bool creases = false;                  ///< along edges where it bends sharply (FeatureEdges::crease) only
+  bool creases = false;  ///< along edges where it bends sharply (FeatureEdges::crease) only
   std::optional<Eigen::Vector3d> point = {};  ///< around the CAD faces there, model units
 };
 
@@ -37,6 +37,10 @@ struct CutPlace {
 /// region may have been refined since. Throws Error(Stage, "tessellate") where a part cannot be remeshed.
 std::optional<RegionParts> regionParts(const Model& model, int region, const CutPlace& where,
                                        const Progress& progress);
+
+/// Control points of the surfaces that the CAD faces of a region lie on, those of a bicubic patch for each at
+/// least. Nothing where there are not several faces, or no CAD shape.
+std::optional<int> cadPoles(const Model& model, int region);
 
 /// The model with regions replaced by their parts, which come in the place of the whole: "region 3" becomes
 /// "region 3.1", "region 3.2". Curves and corners keep their numbers, new ones come last.
