@@ -511,10 +511,10 @@ bool FitRounds::verified(double tolerance, double folds) {
 }
 
 /// The region's point closest to one of a surface that is farther away than is enough, with some reserve for
-/// the places beside it; none for others. Of a true surface the triangles are a coarse picture, so that it is
-/// asked where these are far.
+/// the places beside it where the tolerance leaves any; none for others. Of a true surface the triangles are
+/// a coarse picture, so that it is asked where these are far.
 std::optional<Eigen::Vector3d> FitRounds::farFrom(const Eigen::Vector3d& p) const {
-  const double limit = kAway * enough_;
+  const double limit = std::max(tolerance_, kAway * enough_);
   const auto hit = triangles_.closest(p);
   if (hit.squaredDistance <= limit * limit) return {};
   const Eigen::Vector3d closest = region_.surface ? region_.surface->closest(p).point : hit.point;
