@@ -333,7 +333,7 @@ def test_several_surfaces_go_on_behind_small_holes_as_lines_between_them_would_e
 def test_folds_give_way_to_surfaces_without_that_need_no_more_control_points(monkeypatch, folds, control_points, taken):
     def fitted(folds, control_points):
         return types.SimpleNamespace(folded=[(0.0, 0.0, 0.0)] * folds, control_points=control_points, samples=1000,
-                                     several=False)
+                                     max_deviation=0.0, several=False)
 
     fits = [fitted(1, 400), fitted(folds, control_points)]
     monkeypatch.setattr(sys.modules["trimquad.regions"], "fit", lambda *_: fits.pop(0))

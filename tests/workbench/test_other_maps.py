@@ -35,7 +35,8 @@ def test_a_deep_dome_is_one_surface_though_its_quads_have_irregular_vertices():
 def fit_alike(monkeypatch, *fits):
     """Let surfaces be fitted with these numbers of folds and control points, and none be trimmed."""
     waiting = [
-        types.SimpleNamespace(folded=[(0.0, 0.0, 0.0)] * folds, control_points=control_points, samples=1000)
+        types.SimpleNamespace(folded=[(0.0, 0.0, 0.0)] * folds, control_points=control_points, samples=1000,
+                              max_deviation=0.0)
         for folds, control_points in fits
     ]
     monkeypatch.setattr(sys.modules["trimquad.regions"], "fit", lambda *_: waiting.pop(0))
