@@ -31,6 +31,8 @@ STEPS = 2
 # The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
 # have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first.
 CLOSER = 0.1
+# How often a region that was left out is tried again between others than before.
+TAKEN_BACK = 2
 # The part of the tolerance that a surface may come to be away when it is moved to agree with its neighbours; by kind of input.
 MOVED = {"cad": 0.77, "mesh": 0.9}
 
@@ -136,14 +138,23 @@ def _refit_all(at_fault, result, progress):
         if _fit_around_closer(item, result, progress):
             item.fitted, item.error = fitted, None
         else:
-            item.left_out = fitted, _fits_around(item, result)
+            _leave_out(item, fitted, result)
+
+
+def _leave_out(item, fitted, result):
+    item.left_out = fitted
+    item.left_out_between.append(_fits_around(item, result))
 
 
 def _take_back(result):
-    """Takes regions back that were left out, where those around are others by now. Whether there are any."""
-    back = [r for r in result.failed if r.left_out and _fits_around(r, result) != r.left_out[1]]
+    """Takes regions back that were left out, where those around are others by now, each a few times at most: regions at
+    fault together could take turns. Whether there are any."""
+    back = [
+        r for r in result.failed
+        if r.left_out and len(r.left_out_between) <= TAKEN_BACK and _fits_around(r, result) not in r.left_out_between
+    ]
     for item in back:
-        item.fitted, item.error, item.left_out = item.left_out[0], None, None
+        item.fitted, item.error, item.left_out = item.left_out, None, None
     return bool(back)
 
 

@@ -19,6 +19,8 @@ MORE_POLES, FEW_POLES = 5, 1000
 # cut instead. And the same for a whole model, with the checks of its faces. 1e6 steps take about half a second. Work rather
 # than time, so that results do not depend on the machine.
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
+# Of one fit to such a region of several CAD faces.
+MOST_WORK_OF_FIT = 30_000_000
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map; several only
 # for a single one.
 MOST_WORK_BEFORE_CHOICE = 8e6
@@ -82,7 +84,7 @@ class RegionResult:
         self.embedding = self.grid = self.quads = self.fitted = self.error = None
         self.edge_length = None  # of its quads
         self.fill_holes = 0.0  # holes shorter than this are bridged
-        self.most_poles = None  # that its surfaces may take, where there is a limit
+        self.most_poles = self.most_work = None  # that its surfaces and the fit may take, where there are limits
         self.wanted_singularities = "weighed"  # which ones the map is to have, as OtherMap.singularities
         self.refits = self.field_edits = 0
         self.fitted_from = self  # whose map the B-spline surfaces are of: another one where none fits over its own
@@ -97,7 +99,8 @@ class RegionResult:
         self.may_be_divided = False  # along its sharp edges, as it failed
         self.cut_from = None
         self.fitted_closer = False
-        self.left_out = None  # surfaces that could not be trimmed, and those around then
+        self.left_out = None  # surfaces that could not be trimmed
+        self.left_out_between = []  # each time those around it then
         self.cuts_left = len(CUTS)
         self.parts = None  # of the cut that comes next, where it is known
         self.has_parts = None  # whether it consists of several, where that is known
@@ -199,6 +202,7 @@ def _map_region(item, index, result, progress):
     first Error that these do not cure ends it and is kept in the region."""
     item.edge_length, item.fill_holes = result.options.edge_length, result.options.fill_holes
     item.most_poles = _most_poles(index, result)
+    item.most_work = None if item.most_poles is None else MOST_WORK_OF_FIT
     for halving in range(HALVINGS + 1):
         try:
             _try_region(item, index, result, progress)
@@ -312,7 +316,7 @@ def fit_over_another_map(item, result, progress, ways=OTHER_MAPS, takes=lambda f
         native.place_region(result.model, index, region)
         other = RegionResult(result.model.regions[index])
         other.edge_length, other.guidance = item.edge_length, item.guidance
-        other.most_poles = item.most_poles
+        other.most_poles, other.most_work = item.most_poles, item.most_work
         other.wanted_singularities = way.singularities
         other.fill_holes = max(item.fill_holes, SMALL_HOLE * item.edge_length if way.behind_small_holes else 0)
         try:
@@ -500,5 +504,6 @@ def _fit_options(item, result, smallest_rectangle=False, slides=True, max_poles=
         slides=slides,
         threads=max(1, result.options.threads // len(result.regions)),
         max_poles=max_poles,
+        max_work=item.most_work,
         **tolerances,
     )

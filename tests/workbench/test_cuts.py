@@ -173,6 +173,7 @@ def one_region_fails(monkeypatch):
 
 
 def box_in_regions():
+    import FreeCAD  # noqa: F401  before Part
     import Part
 
     return trimquad.convert(Part.makeBox(1, 2, 3), trimquad.Options(quads=200))
@@ -195,6 +196,40 @@ def test_a_region_that_was_left_out_is_taken_back_once_those_around_are_others(o
         failures.extend(["region 2", other])
         assert [r.name for r in box_in_regions().failed] == (["region 2"] if other == "region 3" else [])
         assert trims == last
+
+
+def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch):
+    import FreeCAD  # noqa: F401  before others of its modules
+    from trimquad.native import load
+
+    native, sets = load(), []
+    # Of three regions around a corner, only one can stay: the one at fault, by those that are there.
+    at_fault = {(0, 2, 4): 0, (0, 2): 0, (2, 4): 2, (0, 4): 4}
+
+    class FaceChecks:
+        def __init__(self, checker):
+            pass
+
+        def faults(self, model, *_):
+            sets.append(tuple(k for k in (0, 2, 4) if k in {face["region"] for face in model.faces}))
+            assert len(sets) < 30, sets
+            return [["crosses another"] if at_fault.get(sets[-1]) == face["region"] else [] for face in model.faces]
+
+        def faults_of_whole(self, *_):
+            return []
+
+    class Native:
+        def __getattr__(self, name):
+            return FaceChecks if name == "FaceChecks" else getattr(native, name)
+
+    def refit(item, charts, error, result, progress):
+        item.fitted, item.error = None, error
+
+    monkeypatch.setattr(joining, "_refit", refit)
+    monkeypatch.setattr(joining, "load", Native)
+    monkeypatch.setattr(joining, "_fit_closer", lambda *_: False)
+    result = box_in_regions()
+    assert len(result.failed) == 2 and len(sets[-1]) == 1
 
 
 def test_fits_end_with_a_measure_of_work(monkeypatch):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "trimquad/base/parallel.h"
@@ -94,6 +95,7 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       enough_(std::max(options.tolerance, options.enough)),
       threads_(options.threads),
       maxPoles_(std::min(policy.maxPoles, options.maxPoles)),
+      maxWork_(std::min(options.maxWork, std::numeric_limits<long>::max() - progress.work()) + progress.work()),
       progress_(progress),
       triangles_(triangleTree(region.mesh)),
       policy_(policy),
@@ -568,6 +570,7 @@ bool FitRounds::correctionPays() const {
 
 /// More knots, or else more fairness. Whether there are others now.
 bool FitRounds::refine() {
+  if (progress_.work() > maxWork_) throw unreachable();
   if (failing_.empty()) {
     // Within tolerance, but turned over somewhere.
     if (insertKnots()) return true;

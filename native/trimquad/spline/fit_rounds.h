@@ -101,6 +101,7 @@ class FitRounds {
   const Region& region_;
   const double tolerance_, enough_;
   const int threads_, maxPoles_;
+  const long maxWork_;  ///< of the progress, with what was done before
   const Progress& progress_;
   FittedSurface result_;
   std::vector<SurfaceSample> samples_;

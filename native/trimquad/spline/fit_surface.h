@@ -29,6 +29,8 @@ struct FitOptions {
   int threads = 1;  ///< the result does not depend on it
   /// Given up beyond about so many control points.
   int maxPoles = std::numeric_limits<int>::max();
+  /// Given up beyond about so much work, in the steps that are added to the progress's.
+  long maxWork = std::numeric_limits<long>::max();
 };
 
 /// B-spline surfaces through one region, not trimmed yet: a single one where one chart holds the region, else

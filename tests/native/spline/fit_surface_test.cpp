@@ -216,5 +216,21 @@ TEST(FitSurface, isGivenUpBeyondSoManyPoles) {
             fitted.surface.poles.size());
 }
 
+TEST(FitSurface, isGivenUpBeyondSoMuchWorkOfItsOwn) {
+  auto sheet = centredWavySheet();
+  sheet.build();
+  FitOptions options;
+  options.tolerance = 1e-4;
+  Progress progress;
+  fitSurface(sheet.region, sheet.map, options, progress);
+  const long work = progress.work();
+  options.maxWork = work;
+  fitSurface(sheet.region, sheet.map, options, progress);
+  options.maxWork = work / 4;
+  EXPECT_THROW(fitSurface(sheet.region, sheet.map, options, progress), Error);
+  options.enough = 0.1;
+  EXPECT_GT(fitSurface(sheet.region, sheet.map, options, progress).maxDeviation, 1e-4);
+}
+
 }  // namespace
 }  // namespace trimquad
