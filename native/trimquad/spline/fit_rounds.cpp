@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 #include <string>
 
 #include "trimquad/base/parallel.h"
@@ -67,6 +68,9 @@ constexpr int kFoldPatience = 8;
 /// they are some, for they are looked for in places.
 constexpr int kBulgePatience = 10;
 constexpr double kAway = 0.95;
+/// Which part of its knot rectangle a bulge stands for in the fit, how many times more when it comes again;
+/// part of the rectangle up to which another one is the same.
+constexpr double kBulgePart = 0.125, kBulgeAgain = 4, kSameBulge = 0.25;
 /// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
 /// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
 /// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
@@ -132,8 +136,9 @@ FittedSurface FitRounds::rounds() {
         result_.bulges == 0 && result_.folded.empty())
       return economised();
     keepIfEnough();
-    if (smoothsFolds() && ++foldRounds_ > kFoldPatience) throw unreachable();
-    if (kept_ && kept_->bulges > 0 && ++bulgeRounds_ > kBulgePatience) throw unreachable();
+    const bool hasBulges = kept_ && kept_->bulges > 0;
+    if (hasBulges && ++bulgeRounds_ > kBulgePatience) throw unreachable();
+    if (smoothsFolds() && !hasBulges && ++foldRounds_ > kFoldPatience) throw unreachable();
     stiffenFolds();
     if (newBulges_ || correctionPays()) {
       correct();
@@ -186,7 +191,8 @@ std::vector<std::vector<Datum>> FitRounds::dataOf(const std::vector<SurfaceSampl
 
 /// The surfaces through the samples at their parameters, and their deviation.
 void FitRounds::solve() {
-  const auto data = dataOf(samples_, emphasis_);
+  auto data = dataOf(samples_, emphasis_);
+  addBulges(data);
   auto surfaces = leastSquares(data);
   for (int attempt = 0; !surfaces && attempt < 4; ++attempt) {
     stiffen(100);
@@ -319,24 +325,12 @@ void FitRounds::stopSliding() {
   emphasis_.assign(samples_.size(), 1);
 }
 
-/// Around samples where the surface is turned over, or beside which it is, and where it had a bulge that feet
-/// avoid: back to the map's parameters.
+/// Around samples where the surface is turned over, or beside which it is: back to the map's parameters.
 void FitRounds::unfold(std::vector<int> turnedOver, const BetweenFeet& between) {
   for (const int k : between.turnedOverCells)
     turnedOver.insert(turnedOver.end(), cells_[k].begin(), cells_[k].end());
   for (const auto& cell : cellsAround(cells_, turnedOver))
     for (const int i : cell) returnToMap(i);
-  if (bulgeSpots_.empty()) return;
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    if (std::any_of(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
-          const auto seen = seenFrom(spot.at.chart, ofMap_[i]);
-          return seen && holds(spot, *seen, 1);
-        }))
-      returnToMap(int(i));
-}
-
-bool FitRounds::holds(const BulgeSpot& spot, const Eigen::Vector2d& x, double part) {
-  return ((x - spot.at.parameter).cwiseAbs().array() <= part * spot.reach.array()).all();
 }
 
 void FitRounds::returnToMap(int sample) {
@@ -347,15 +341,37 @@ void FitRounds::returnToMap(int sample) {
   emphasis_[sample] = kFoldEmphasis;
 }
 
-/// Whether there are bulges where there were none before.
+/// Each bulge is one of the places of the fit from now on, to come back to the region from where the surface
+/// is; what comes again counts more. Whether there are any.
 bool FitRounds::noteBulges(const std::vector<FitPlace>& bulges) {
+  std::set<BulgeSpot*> again;
   const std::size_t before = bulgeSpots_.size();
-  for (const auto& x : bulges)
-    if (std::none_of(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
-          return spot.at.chart == x.chart && holds(spot, x.parameter, 0.5);
-        }))
-      bulgeSpots_.push_back({x, knotIntervals(x)});
-  return bulgeSpots_.size() > before;
+  bulgeSpots_.reserve(before + bulges.size());
+  for (const auto& x : bulges) {
+    const auto known = std::find_if(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
+      return spot.at.chart == x.chart &&
+             ((x.parameter - spot.at.parameter).cwiseAbs().array() <= kSameBulge * spot.reach.array()).all();
+    });
+    if (known == bulgeSpots_.end()) {
+      const Eigen::Vector2d reach = knotIntervals(x);
+      bulgeSpots_.push_back({x, reach, kBulgePart * reach.prod()});
+    } else if (known - bulgeSpots_.begin() < std::ptrdiff_t(before)) {
+      again.insert(&*known);
+    }
+  }
+  for (auto* spot : again) spot->weight *= kBulgeAgain;
+  return !bulges.empty();
+}
+
+void FitRounds::addBulges(std::vector<std::vector<Datum>>& data) const {
+  for (const auto& spot : bulgeSpots_) {
+    const auto& x = spot.at.parameter;
+    data[spot.at.chart].push_back({x, closest(result_.surfaces[spot.at.chart].point(x[0], x[1])), spot.weight});
+  }
+}
+
+Eigen::Vector3d FitRounds::closest(const Eigen::Vector3d& p) const {
+  return region_.surface ? region_.surface->closest(p).point : triangles_.closest(p).point;
 }
 
 /// On new knots: the map's parameters, which are smooth where the map is, or those corrected on the coarser
@@ -400,9 +416,9 @@ void FitRounds::keepIfEnough() {
   const auto failing = failing_;
   const auto turned = turned_;
   const bool isEnough = verified(enough_, kSmallFolds);
-  const bool better = !kept_ || result_.bulges < kept_->bulges ||
-                      (result_.bulges == kept_->bulges &&
-                       (result_.folded.empty() || result_.folded.size() < kept_->folded.size()));
+  const bool better = !kept_ || (result_.bulges > 0 || kept_->bulges > 0
+                                     ? result_.maxDeviation < kept_->maxDeviation
+                                     : result_.folded.empty() || result_.folded.size() < kept_->folded.size());
   if (isEnough && better) kept_ = result_;
   failing_ = failing;
   turned_ = turned;
@@ -490,12 +506,12 @@ bool FitRounds::verified(double tolerance, double folds) {
   newBulges_ = noteBulges(between_.away) || newBulges_;
   for (const auto& x : between_.away) {
     const Eigen::Vector3d p = result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]);
-    const Eigen::Vector3d closest = farFrom(p).value_or(p);
-    const double distance = (closest - p).norm();
+    const Eigen::Vector3d there = farFrom(p).value_or(p);
+    const double distance = (there - p).norm();
     auto& chart = result_.deviations[x.chart];
     if (distance > chart.max) {
       chart.max = distance;
-      chart.where = closest;
+      chart.where = there;
     }
     result_.maxDeviation = std::max(result_.maxDeviation, distance);
   }
@@ -519,9 +535,9 @@ std::optional<Eigen::Vector3d> FitRounds::farFrom(const Eigen::Vector3d& p) cons
   const double limit = std::max(tolerance_, kAway * enough_);
   const auto hit = triangles_.closest(p);
   if (hit.squaredDistance <= limit * limit) return {};
-  const Eigen::Vector3d closest = region_.surface ? region_.surface->closest(p).point : hit.point;
-  if ((closest - p).norm() <= limit) return {};
-  return closest;
+  const Eigen::Vector3d there = closest(p);
+  if ((there - p).norm() <= limit) return {};
+  return there;
 }
 
 /// What the surfaces are between the feet, where they come close.

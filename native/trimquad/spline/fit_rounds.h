@@ -125,10 +125,11 @@ class FitRounds {
     BetweenFeet between;
   };
 
-  /// Where surfaces had bulges between feet.
+  /// Where surfaces had bulges between feet, at least once.
   struct BulgeSpot {
     FitPlace at;
     Eigen::Vector2d reach;  ///< quads, along u and v
+    double weight;          ///< of the surface's way back to the region there, quads^2
   };
 
   FittedSurface rounds();
@@ -151,7 +152,8 @@ class FitRounds {
   void stopSliding();
   void unfold(std::vector<int> turnedOver, const BetweenFeet& between);
   void returnToMap(int sample);
-  static bool holds(const BulgeSpot& spot, const Eigen::Vector2d& x, double part);
+  Eigen::Vector3d closest(const Eigen::Vector3d& p) const;
+  void addBulges(std::vector<std::vector<Datum>>& data) const;
   bool noteBulges(const std::vector<FitPlace>& bulges);
   void chooseParameters();
   void keepIfEnough();
