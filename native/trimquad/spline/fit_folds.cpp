@@ -79,7 +79,7 @@ BetweenFeet betweenFeet(const std::vector<SplineSurface>& surfaces, const std::v
   };
   const auto lookAt = [&](const FitPlace& x, const std::array<int, 3>& cell) {
     const auto jet = surfaces[x.chart].jet(x.parameter[0], x.parameter[1]);
-    if (view.isAway && view.isAway(jet.s)) return Look::Away;
+    if (view.isAway && view.isAway(x)) return Look::Away;
     const Eigen::Vector3d normal = jet.su.cross(jet.sv);
     const bool agrees =
         std::any_of(cell.begin(), cell.end(), [&](int i) { return samples[i].agrees(normal); });

@@ -46,8 +46,8 @@ struct FitView {
   std::function<double(const FitPlace&)> knotInterval;
   /// Whether the region faces that way near a point.
   std::function<bool(const Eigen::Vector3d& p, const Eigen::Vector3d& normal)> facesLikewise;
-  /// Whether a point is farther from the region than the surfaces may be.
-  std::function<bool(const Eigen::Vector3d& p)> isAway;
+  /// Whether a surface is farther from the region there than it may be.
+  std::function<bool(const FitPlace&)> isAway;
 };
 
 /// Looks at the surfaces within small triangles between samples, as far apart as their feet are: feet avoid

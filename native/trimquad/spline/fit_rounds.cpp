@@ -99,7 +99,8 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       enough_(std::max(options.tolerance, options.enough)),
       threads_(options.threads),
       maxPoles_(std::min(policy.maxPoles, options.maxPoles)),
-      maxWork_(std::min(options.maxWork, std::numeric_limits<long>::max() - progress.work()) + progress.work()),
+      maxWork_(std::min(options.maxWork, std::numeric_limits<long>::max() - progress.work()) +
+               progress.work()),
       progress_(progress),
       triangles_(triangleTree(region.mesh)),
       policy_(policy),
@@ -366,7 +367,8 @@ bool FitRounds::noteBulges(const std::vector<FitPlace>& bulges) {
 void FitRounds::addBulges(std::vector<std::vector<Datum>>& data) const {
   for (const auto& spot : bulgeSpots_) {
     const auto& x = spot.at.parameter;
-    data[spot.at.chart].push_back({x, closest(result_.surfaces[spot.at.chart].point(x[0], x[1])), spot.weight});
+    data[spot.at.chart].push_back(
+        {x, closest(result_.surfaces[spot.at.chart].point(x[0], x[1])), spot.weight});
   }
 }
 
@@ -416,9 +418,10 @@ void FitRounds::keepIfEnough() {
   const auto failing = failing_;
   const auto turned = turned_;
   const bool isEnough = verified(enough_, kSmallFolds);
-  const bool better = !kept_ || (result_.bulges > 0 || kept_->bulges > 0
-                                     ? result_.maxDeviation < kept_->maxDeviation
-                                     : result_.folded.empty() || result_.folded.size() < kept_->folded.size());
+  const bool better =
+      !kept_ || (result_.bulges > 0 || kept_->bulges > 0
+                     ? result_.maxDeviation < kept_->maxDeviation
+                     : result_.folded.empty() || result_.folded.size() < kept_->folded.size());
   if (isEnough && better) kept_ = result_;
   failing_ = failing;
   turned_ = turned;
@@ -505,15 +508,14 @@ bool FitRounds::verified(double tolerance, double folds) {
   result_.bulges = int(between_.away.size());
   newBulges_ = noteBulges(between_.away) || newBulges_;
   for (const auto& x : between_.away) {
-    const Eigen::Vector3d p = result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]);
-    const Eigen::Vector3d there = farFrom(p).value_or(p);
-    const double distance = (there - p).norm();
+    const auto bulge = bulgeAt(x);
+    if (!bulge) continue;
     auto& chart = result_.deviations[x.chart];
-    if (distance > chart.max) {
-      chart.max = distance;
-      chart.where = there;
+    if (bulge->distance > chart.max) {
+      chart.max = bulge->distance;
+      chart.where = bulge->point;
     }
-    result_.maxDeviation = std::max(result_.maxDeviation, distance);
+    result_.maxDeviation = std::max(result_.maxDeviation, bulge->distance);
   }
   for (const auto& x : between_.turnedOver) {
     result_.folded.push_back({result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]), x.chart});
@@ -528,16 +530,35 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
-/// The region's point closest to one of a surface that is farther away than is enough, with some reserve for
-/// the places beside it where the tolerance leaves any; none for others. Of a true surface the triangles are
-/// a coarse picture, so that it is asked where these are far.
-std::optional<Eigen::Vector3d> FitRounds::farFrom(const Eigen::Vector3d& p) const {
+/// Where a surface is farther away than is enough, with some reserve for the places beside it where the
+/// tolerance leaves any; none elsewhere. Beyond the region's boundary only what it is above or below counts.
+/// Of a true surface the triangles are a coarse picture, so that it is asked where these are far.
+std::optional<FitRounds::Bulge> FitRounds::bulgeAt(const FitPlace& x) const {
+  const auto jet = result_.surfaces[x.chart].jet(x.parameter[0], x.parameter[1]);
   const double limit = std::max(tolerance_, kAway * enough_);
-  const auto hit = triangles_.closest(p);
+  const auto hit = triangles_.closest(jet.s);
   if (hit.squaredDistance <= limit * limit) return {};
-  const Eigen::Vector3d there = closest(p);
-  if ((there - p).norm() <= limit) return {};
-  return there;
+  const Eigen::Vector3d there = closest(jet.s), away = there - jet.s;
+  const double distance =
+      isOnBoundary(hit) ? std::abs(away.dot(jet.su.cross(jet.sv).normalized())) : away.norm();
+  if (!(distance > limit)) return {};
+  return Bulge{distance, there};
+}
+
+/// Exact: barycentric coordinates on an edge or in a corner are zero.
+bool FitRounds::isOnBoundary(const TriangleTree::Hit& hit) const {
+  const auto& mesh = region_.mesh;
+  const auto& t = triangles_.triangles()[hit.triangle];
+  int corner = 0;
+  const auto zeros = (hit.barycentric.array() == 0).count();
+  if (zeros == 0) return false;
+  if (zeros == 2) {
+    hit.barycentric.maxCoeff(&corner);
+    return mesh.is_boundary(VertexHandle(t[corner]));
+  }
+  hit.barycentric.minCoeff(&corner);
+  const auto h = mesh.find_halfedge(VertexHandle(t[(corner + 1) % 3]), VertexHandle(t[(corner + 2) % 3]));
+  return mesh.is_boundary(mesh.edge_handle(h));
 }
 
 /// What the surfaces are between the feet, where they come close.
@@ -549,11 +570,11 @@ BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation, bool forBulge
       [&](const FitPlace& x) { return knotInterval(x); },
       [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); },
       {}};
-  if (forBulges) view.isAway = [&](const Eigen::Vector3d& p) { return farFrom(p).has_value(); };
+  if (forBulges) view.isAway = [&](const FitPlace& x) { return bulgeAt(x).has_value(); };
   BetweenFeet result = betweenFeet(result_.surfaces, samples_, feet_, cells_, view, threads_, progress_);
   if (forBulges)
     for (const FitPlace& x : borderPlaces())
-      if (farFrom(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]))) result.away.push_back(x);
+      if (bulgeAt(x)) result.away.push_back(x);
   return result;
 }
 

@@ -138,7 +138,13 @@ class FitRounds {
   void keepSheetsApart();
   void solve();
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
-  std::optional<Eigen::Vector3d> farFrom(const Eigen::Vector3d& p) const;
+  /// How far a surface is from the region at a place, and the region's point there.
+  struct Bulge {
+    double distance;
+    Eigen::Vector3d point;
+  };
+  std::optional<Bulge> bulgeAt(const FitPlace& x) const;
+  bool isOnBoundary(const TriangleTree::Hit& hit) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,

@@ -148,7 +148,8 @@ TEST(FitFolds, bulgesBetweenFeetOnBothSidesOfASeamAreSeen) {
     std::vector<FitPlace> feet;
     for (const auto& s : tube.samples) feet.push_back({0, s.parameter});
     FitView view = Zigzag().view;
-    view.isAway = [&](const Eigen::Vector3d& p) {
+    view.isAway = [&](const FitPlace& x) {
+      const auto p = tube.surfaces[0].point(x.parameter[0], x.parameter[1]);
       return tube.region.closest(p).squaredDistance > 0.05 * 0.05;
     };
     const auto found = betweenFeet(tube.surfaces, tube.samples, feet, tube.cells, view, 1, Progress());
