@@ -89,7 +89,9 @@ FoldPlan planFold(const SampledCurve& sampled, const std::array<const Sheet*, 2>
                                  (fixed[side][1] && along[i] > length - half));
 
   std::vector<std::array<double, 2>> ranges;  // quads, with their blends
-  if (fixed[0][0] || fixed[1][0]) ranges.push_back({-half, 2 * half});
+  // Sheets that cross steeply in a corner have an intersection there, whatever fixes their tangent planes.
+  const auto touches = [](double angle) { return std::abs(angle) < kKept; };
+  if ((fixed[0][0] || fixed[1][0]) && touches(plan.angle.front())) ranges.push_back({-half, 2 * half});
   for (std::size_t i = 0; i + 1 < count; ++i) {
     if ((plan.kind[i] > 0) == (plan.kind[i + 1] > 0)) continue;
     const double at = (along[i] + along[i + 1]) / 2;
@@ -97,7 +99,8 @@ FoldPlan planFold(const SampledCurve& sampled, const std::array<const Sheet*, 2>
       plan.level[k] = std::min(plan.level[k], kFold * smoothStep(std::abs(along[k] - at) / half));
     ranges.push_back({at - 2 * half, at + 2 * half});
   }
-  if (fixed[0][1] || fixed[1][1]) ranges.push_back({length - 2 * half, length + half});
+  if ((fixed[0][1] || fixed[1][1]) && touches(plan.angle.back()))
+    ranges.push_back({length - 2 * half, length + half});
 
   std::sort(ranges.begin(), ranges.end());
   std::vector<std::array<double, 2>> merged;

@@ -110,10 +110,16 @@ CornerPoint ModelTrimmer::cornerOnBorders(const std::vector<int>& members) {
     const auto& ends = lines.endsAt(point);
     const SheetLine line = lines.line(ends[0].border, 0);
     if (ends.size() == 1) {
-      std::vector<int> others;
-      for (int k = 0; k < int(members.size()); ++k)
-        if (sheetRegion_[uses_[members[k]].sheet] != region) others.push_back(k);
-      const int other = others.size() == 1 && !placed ? others[0] : -1;
+      // Sheets that were moved to meet in the border's end all pass through it.
+      int other = -1;
+      double steepest = -1;
+      const auto along = line.sheet->jet(line.at(lines.endOf(ends[0])));
+      const Eigen::Vector3d tangent = along.su * line.along[0] + along.sv * line.along[1];
+      for (int k = 0; k < int(members.size()) && !placed; ++k) {
+        if (sheetRegion_[uses_[members[k]].sheet] == region) continue;
+        const double steep = std::abs(tangent.dot(normal(sheets[k]->jet(sheets[k]->footPoint(p, guess[k])))));
+        if (steep > steepest) steepest = steep, other = k;
+      }
       lines.setEnd(ends[0], placeOnLine(placed ? corner.point : p, line, lines.endOf(ends[0]),
                                         other < 0 ? nullptr : sheets[other],
                                         other < 0 ? Eigen::Vector2d(0, 0) : guess[other], reach_));
