@@ -61,7 +61,7 @@ def trim(result, progress):
                 result.native_shape = native.assemble(result.spline)
             again = (
                 _refit_faulty(result, checks, progress)
-                or _fit_loose_closer(result, progress)
+                or _fit_apart_closer(result, progress)
                 or _take_back(result)
             )
             if not again:
@@ -235,13 +235,14 @@ def _fit_parts_closer(item, result, progress):
     return any(_at_once(_fit_closer, parts, result, progress))
 
 
-def _fit_loose_closer(result, progress):
+def _fit_apart_closer(result, progress):
     """Fits regions of a CAD model more closely, once, whose surfaces are nearly tangent to others and too far from them to
-    be moved onto a common edge. Whether there are any that could be."""
+    be moved onto a common edge, or make a sharp wedge with others and cut these too far from the edge. Whether there are
+    any that could be."""
     if result.source.kind != "cad" or result.exhausted:
         return False
-    loose = [(result.regions[k],) for k in result.spline.loose_regions]
-    return any(_at_once(_fit_closer, loose, result, progress))
+    apart = [(result.regions[k],) for k in sorted(result.spline.loose_regions | result.spline.stray_regions)]
+    return any(_at_once(_fit_closer, apart, result, progress))
 
 
 def _fit_around_closer(item, result, progress):

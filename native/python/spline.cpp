@@ -88,6 +88,7 @@ void bindSpline(py::module_& m) {
   py::class_<SplineModel>(m, "SplineModel")
       .def_readonly("loose_edges", &SplineModel::looseEdges)
       .def_readonly("loose_regions", &SplineModel::looseRegions, "regions with loose edges")
+      .def_readonly("stray_regions", &SplineModel::strayRegions, "regions whose edges stray from the model's")
       .def_property_readonly("moved_regions", &movedRegions,
                              "regions whose surface was moved to agree with others that it touches")
       .def_property_readonly("faces", [](const SplineModel& model) {

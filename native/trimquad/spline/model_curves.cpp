@@ -118,8 +118,29 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
     if (!edge) edge = within(near);
   }
   for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance, kLooseGap * model_.diagonal);
-  result.push_back({std::move(*edge), {&a, &b}, loose});
+  const bool strays = !loose && this->strays(curve, *edge);
+  result.push_back({std::move(*edge), {&a, &b}, loose, strays});
   return result;
+}
+
+/// Whether the edge that two sheets share leaves a place of its curve beyond both of them, and far away:
+/// where their surfaces make a sharp wedge, each may be close to its region and their intersection not.
+bool ModelTrimmer::strays(const CurveWithSides& curve, const std::vector<TrimPiece>& edge) const {
+  const SampledCurve& sampled = curve.sampled.front();
+  auto piece = edge.begin();
+  for (std::size_t i = 0; i < sampled.s.size(); ++i) {
+    const double s = std::clamp(sampled.s[i], edge.front().curve.first(), edge.back().curve.last());
+    while (s > piece->curve.last() && std::next(piece) != edge.end()) ++piece;
+    if ((piece->curve.point(s) - sampled.point[i]).norm() <= enough_) continue;
+    const auto isBeyond = [&](int side) {
+      const auto x = piece->onSheet[side].derivatives(s, 1);
+      const Eigen::Vector2d way = sampled.foot[side][i] - x[0];
+      const double left = x[1][0] * way[1] - x[1][1] * way[0];
+      return curve.sides[side].run->forward ? left < 0 : left > 0;
+    };
+    if (isBeyond(0) && isBeyond(1)) return true;
+  }
+  return false;
 }
 
 std::vector<TrimPiece> ModelTrimmer::freeEdgeOf(int id, const SampledCurve& sampled, const SheetSide& side,

@@ -64,6 +64,9 @@ struct SplineModel {
   /// on the first face's surface, the second one's only within the edge's tolerance.
   int looseEdges = 0;
   std::set<int> looseRegions = {};  ///< whose surfaces these are between
+  /// Regions whose common edge, where their surfaces cut each other, is farther from the curve that they end
+  /// on than the tolerance: they make a sharp wedge there.
+  std::set<int> strayRegions = {};
   /// By chart, of a region whose surfaces were moved to agree with others that they touch: those, whole, and
   /// how far it lies from them now.
   struct MovedSurface {

@@ -134,7 +134,9 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
   for (const auto& vertex : vertices_) result.vertices.push_back({vertex.point, kSmallestTolerance});
   std::map<const BoundaryRun*, std::vector<LoopPiece>> pieces;
   const auto addEdge = [&](const CurveEdge& added) {
-    const auto& [edge, sides, loose] = added;
+    const auto& [edge, sides, loose, strays] = added;
+    if (strays)
+      for (const auto* side : sides) result.strayRegions.insert(side->run->region);
     const BoundaryRun& first = *sides[0]->run;
     SplineVertexId start{groupOf(first, first.start)};
     for (std::size_t i = 0; i < edge.size(); ++i) {
