@@ -157,9 +157,7 @@ void appendMovesToCurve(const StripMoves& strip, const LedToCorners& lead, const
                         std::vector<SurfaceMove>& moves) {
   constexpr double share = 0.5;  // of the turning that is this sheet's
   for (std::size_t i = 0; i < strip.samples(); ++i) {
-    // In the curve's ends others may have been made to meet.
-    const bool exact = plan.near[i] || i == 0 || i + 1 == strip.samples();
-    const double error = exact ? std::min(gap / 2, limits.tangentError) : gap / 2;
+    const double error = plan.near[i] ? std::min(gap / 2, limits.tangentError) : gap / 2;
     if (!strip.append(i, strip.point(i) + lead(i), error, {}, moves)) continue;
     const std::size_t placed = moves.size() - 1;
     if (!plan.given[side][i]) {
@@ -170,7 +168,7 @@ void appendMovesToCurve(const StripMoves& strip, const LedToCorners& lead, const
         turn *= turning == Turning::ToFold ? 1 - smoothStep((angle - kFlattened) / (kKept - kFlattened)) : 0;
       strip.setSlope((onLeft ? -share : share) * plan.kind[i] * turn, turns ? kFoldMissed : HUGE_VAL, moves);
     }
-    if (exact) {
+    if (plan.near[i]) {
       moves[placed].weight *= kPlaceWeight;
       moves[placed].firm = true;
     }
