@@ -269,6 +269,42 @@ TEST(TrimModel, closedSheetsAreMovedAndStayClosed) {
   }
 }
 
+/// Two plane sheets that make a wedge of ten degrees along x = 5, each moved into it by `inwards`.
+TrimCase wedge(double inwards) {
+  TrimCase c;
+  const double slope = std::tan(std::numbers::pi / 18);
+  const auto lower =
+      interpolated([=](double x, double y) { return Eigen::Vector3d(x, y, inwards); }, -1, 6, 8, -1, 7, 8);
+  const auto upper =
+      interpolated([=](double y, double x) { return Eigen::Vector3d(x, y, (5 - x) * slope - inwards); }, -1,
+                   7, 8, -1, 6, 8);
+  const Eigen::Vector3d a(5, 0, 0), b(5, 6, 0), up(0, 0, 5 * slope);
+  const Eigen::Vector3d at[] = {a, b, {0, 6, 0}, {0, 0, 0}, {0, 6, up[2]}, {0, 0, up[2]}};
+  std::vector<CornerId> corners;
+  for (const auto& p : at) corners.push_back(c.corner(p));
+  const auto line = [&](int i, int j) {
+    const Eigen::Vector3d from = at[i], to = at[j];
+    return c.curve(0, 1, corners[i], corners[j],
+                   [=](double t) { return Eigen::Vector3d(from + t * (to - from)); });
+  };
+  const CurveId shared = line(0, 1);
+  const TrimCase::Loop ofLower{{shared, true}, {line(1, 2), true}, {line(2, 3), true}, {line(3, 0), true}};
+  const TrimCase::Loop ofUpper{{shared, false}, {line(0, 5), true}, {line(5, 4), true}, {line(4, 1), true}};
+  c.region(lower, {ofLower}, dropZ);
+  c.region(upper, {ofUpper}, [](const Eigen::Vector3d& p) { return Eigen::Vector2d(p[1], p[0]); });
+  c.model.shells.push_back({{0, 1}, {}});
+  return c;
+}
+
+TEST(TrimModel, edgesOfAWedgeThatStrayFromTheirCurveAreNamed) {
+  // Either surface is half a tolerance away; they cut each other 5.7 tolerances from the curve.
+  const auto model = wedge(5e-4).trim();
+  EXPECT_EQ(model.strayRegions, (std::set<int>{0, 1}));
+  EXPECT_EQ(model.looseEdges, 0);
+  EXPECT_TRUE(wedge(-5e-4).trim().strayRegions.empty()) << "beyond the curve nothing is missing";
+  EXPECT_TRUE(wedge(1e-4).trim().strayRegions.empty()) << "1.1 tolerances, which crossing sheets may leave";
+}
+
 TEST(TrimModel, sheetsThatCannotMoveMeetLooselyAndSaySo) {
   auto sheets = tangentSheets([](double, double) { return 2e-4; });
   for (auto& fit : sheets.fits) fit->surface = withKnotU(fit->surface, fit->surface.knotsU[10]);
