@@ -8,6 +8,19 @@ from trimquad import joining, regions
 from trimquad.error import Error
 
 
+def stand_in(monkeypatch, **parts):
+    """Has trimming and joining use these instead of the compiled module's."""
+    from trimquad.native import load
+
+    native = load()
+
+    class Native:
+        def __getattr__(self, name):
+            return parts.get(name) or getattr(native, name)
+
+    monkeypatch.setattr(joining, "load", Native)
+
+
 def tube():
     """Four planes and four cylinders around a box with rounded edges, open at both ends: one region."""
     import FreeCAD  # noqa: F401  before Part
@@ -107,12 +120,9 @@ def test_a_region_that_cannot_be_trimmed_is_cut(monkeypatch):
             raise Error("stage", "fit", "trims cross", "region 0, Edge1")
         return native.trim_model(model, *arguments)
 
-    class Native:
-        def __getattr__(self, name):
-            return trim_model if name == "trim_model" else getattr(native, name)
+    stand_in(monkeypatch, trim_model=trim_model)
 
     monkeypatch.setattr(joining, "_refit", refusing)
-    monkeypatch.setattr(joining, "load", Native)
     result = converted()
     assert len(whole) == 1 and len(result.cuts) == 1 and not result.failed
     assert result.shape.isValid() and len(result.shape.Faces) == 8
@@ -131,15 +141,12 @@ def test_all_regions_that_cannot_be_trimmed_are_fitted_again_before_the_next_tri
             raise error
         return native.trim_model(*arguments)
 
-    class Native:
-        def __getattr__(self, name):
-            return trim_model if name == "trim_model" else getattr(native, name)
+    stand_in(monkeypatch, trim_model=trim_model)
 
     def refit(item, charts, error, result, progress):
         fitted_again.append((item.name, error.where))
 
     monkeypatch.setattr(joining, "_refit", refit)
-    monkeypatch.setattr(joining, "load", Native)
     result = trimquad.convert(Part.makeBox(1, 2, 3), trimquad.Options(quads=200))
     assert not result.failed and len(trims) == 2
     assert sorted(fitted_again) == [("region 2", "region 2"), ("region 4", "region 4, Edge3")]
@@ -157,9 +164,7 @@ def one_region_fails(monkeypatch):
             raise Error("stage", "fit", "encloses nothing", failures.pop(0))
         return native.trim_model(model, maps, fits, *arguments)
 
-    class Native:
-        def __getattr__(self, name):
-            return trim_model if name == "trim_model" else getattr(native, name)
+    stand_in(monkeypatch, trim_model=trim_model)
 
     def refit(item, charts, error, result, progress):
         if item.name == "region 2":
@@ -168,7 +173,6 @@ def one_region_fails(monkeypatch):
             item.fitted = regions.fit(item, result, native.Progress())
 
     monkeypatch.setattr(joining, "_refit", refit)
-    monkeypatch.setattr(joining, "load", Native)
     return trims, failures
 
 
@@ -199,10 +203,7 @@ def test_a_region_that_was_left_out_is_taken_back_once_those_around_are_others(o
 
 
 def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch):
-    import FreeCAD  # noqa: F401  before others of its modules
-    from trimquad.native import load
-
-    native, sets = load(), []
+    sets = []
     # Of three regions around a corner, only one can stay: the one at fault, by those that are there.
     at_fault = {(0, 2, 4): 0, (0, 2): 0, (2, 4): 2, (0, 4): 4}
 
@@ -218,15 +219,12 @@ def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch
         def faults_of_whole(self, *_):
             return []
 
-    class Native:
-        def __getattr__(self, name):
-            return FaceChecks if name == "FaceChecks" else getattr(native, name)
+    stand_in(monkeypatch, FaceChecks=FaceChecks)
 
     def refit(item, charts, error, result, progress):
         item.fitted, item.error = None, error
 
     monkeypatch.setattr(joining, "_refit", refit)
-    monkeypatch.setattr(joining, "load", Native)
     monkeypatch.setattr(joining, "_fit_closer", lambda *_: False)
     result = box_in_regions()
     assert len(result.failed) == 2 and len(sets[-1]) == 1
@@ -292,13 +290,7 @@ def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, rad
         return model
 
     first = None
-    stand_ins = {"FaceChecks": FaceChecks, "trim_model": trim_model}
-
-    class Native:
-        def __getattr__(self, name):
-            return stand_ins.get(name) or getattr(native, name)
-
-    monkeypatch.setattr(joining, "load", Native)
+    stand_in(monkeypatch, FaceChecks=FaceChecks, trim_model=trim_model)
     result = trimquad.convert(leading_edge(radius), trimquad.Options(quads=30, tolerance=0.04))
     assert not result.failed
     if cut:

@@ -182,17 +182,7 @@ CurveJet<7> IntersectionCurve::jet(double s) const {
 }
 
 double IntersectionCurve::parameterOf(const Eigen::Vector3d& p, double guess) const {
-  double s = guess;
-  constexpr int maxSteps = 30;
-  for (int step = 0; step < maxSteps; ++step) {
-    const auto r = reference_.derivatives(s, 2);
-    const double slope = -r[1].squaredNorm() + (p - r[0]).dot(r[2]);
-    if (!(slope < 0)) break;
-    const double move = -(p - r[0]).dot(r[1]) / slope;
-    s += move;
-    if (std::abs(move) < 1e-15 * (reference_.last() - reference_.first())) break;
-  }
-  return s;
+  return nearestParameter(reference_, p, guess);
 }
 
 }  // namespace trimquad

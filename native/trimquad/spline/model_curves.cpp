@@ -15,7 +15,6 @@ constexpr double kTouchCloseness = 0.05;
 /// How far an edge may be from its curve where that lies beyond both sheets, by what is enough for these:
 /// less than sheets that cross at right angles leave between them.
 constexpr double kStrays = 1.25;
-constexpr int kSteps = 5;  ///< to the nearest place of an edge
 
 void addTo(ByteKey& key, const std::vector<TangentStretch>& stretches) {
   key.add(stretches.size());
@@ -134,13 +133,8 @@ bool ModelTrimmer::strays(const CurveWithSides& curve, const std::vector<TrimPie
   auto piece = edge.begin();
   for (std::size_t i = 0; i < sampled.s.size(); ++i) {
     while (sampled.s[i] > piece->curve.last() && std::next(piece) != edge.end()) ++piece;
-    // The nearest place: parameters slide.
-    double s = sampled.s[i];
-    for (int step = 0; step < kSteps; ++step) {
-      const auto c =
-          piece->curve.derivatives(s = std::clamp(s, piece->curve.first(), piece->curve.last()), 1);
-      s += (sampled.point[i] - c[0]).dot(c[1]) / c[1].squaredNorm();
-    }
+    // Parameters slide along curves that are fitted.
+    const double s = nearestParameter(piece->curve, sampled.point[i], sampled.s[i]);
     if (!(s > piece->curve.first() && s < piece->curve.last())) continue;  // another piece's, or a corner's
     if ((piece->curve.point(s) - sampled.point[i]).norm() <= kStrays * enough_) continue;
     const auto isBeyond = [&](int side) {

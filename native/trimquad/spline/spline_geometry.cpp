@@ -430,4 +430,18 @@ SplineSurface restricted(const SplineSurface& surface, const Eigen::AlignedBox2d
   return result;
 }
 
+double nearestParameter(const SpaceCurve& curve, const Eigen::Vector3d& p, double guess) {
+  double s = guess;
+  constexpr int maxSteps = 30;
+  for (int step = 0; step < maxSteps; ++step) {
+    const auto r = curve.derivatives(s, 2);
+    const double slope = -r[1].squaredNorm() + (p - r[0]).dot(r[2]);
+    if (!(slope < 0)) break;
+    const double move = -(p - r[0]).dot(r[1]) / slope;
+    s += move;
+    if (std::abs(move) < 1e-15 * (curve.last() - curve.first())) break;
+  }
+  return s;
+}
+
 }  // namespace trimquad

@@ -110,6 +110,10 @@ struct SplineSurface {
   SpaceCurve curveAtV(double v) const;
 };
 
+/// The curve's parameter at which it is nearest to `p`, by Newton steps from `guess`; it may lie outside the
+/// domain, where the polynomials of the end spans continue.
+double nearestParameter(const SpaceCurve& curve, const Eigen::Vector3d& p, double guess);
+
 /// The same surface with an additional knot, `times` times.
 SplineSurface withKnotU(const SplineSurface& surface, double u, int times = 1);
 SplineSurface withKnotV(const SplineSurface& surface, double v, int times = 1);
