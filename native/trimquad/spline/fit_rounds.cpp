@@ -58,7 +58,7 @@ constexpr int kPatienceWithFew = 10;
 constexpr double kVainPoles = 3, kVainCleanPoles = 4;
 /// Several surfaces with so many poles are to be within so many tolerances: what asks for that many is noise,
 /// or creases across charts, and the rest of the way takes many times as long.
-constexpr int kManyPoles = 40000;
+constexpr int kManyPoles = 60000;
 constexpr double kNearWithMany = 1.5;
 /// Part of the samples at which the surface may be turned over while parameters are still corrected.
 constexpr double kFewTurned = 0.05;
