@@ -14,7 +14,7 @@ namespace trimquad {
 namespace {
 
 /// Poles that a sheet may come to have, by those it has; and how many more in any case.
-constexpr int kMorePolesAlongCurve = 6, kFewPolesAlongCurve = 2000;
+constexpr int kMorePolesAlongCurve = 6, kFewPolesAlongCurve = 10000;
 /// Weight of the lines beside a curve, which give the sheets the same tangents there, and beyond its ends:
 /// where the sheets' curvatures differ, or several meet, they cannot agree exactly.
 constexpr double kBesideWeight = 0.01;
