@@ -13,6 +13,7 @@
 #include <numeric>
 
 #include "trimquad/base/error.h"
+#include "trimquad/brep/creased_faces.h"
 #include "trimquad/brep/occt_parts.h"
 
 namespace trimquad {
@@ -80,40 +81,55 @@ Traced copied(const TopoDS_Shape& shape, const TopoDS_Shape& numbering) {
   return result;
 }
 
-Traced sewn(const Traced& apart, double tolerance) {
-  BRepBuilderAPI_Sewing sewing(tolerance);
-  sewing.Add(apart.shape);
-  sewing.Perform();
-  Traced result{sewing.SewedShape(), {}, {}, {}};
-  if (result.shape.IsNull() ||
-      elements(result.shape, TopAbs_FACE).Extent() != elements(apart.shape, TopAbs_FACE).Extent())
-    return apart;
+/// The same of a shape made from a traced one. \param image (element of that one) what it became: an edge
+/// that was cut, a wire or compound of its parts
+template <class Image>
+Traced followed(const Traced& before, const TopoDS_Shape& after, const Image& image) {
+  Traced result{after, {}, {}, {}};
   for (const auto kind : kKinds) {
-    const auto before = elements(apart.shape, kind), after = elements(result.shape, kind);
-    // An edge that sewing cut into sections answers with a wire or compound of them.
+    const auto own = elements(before.shape, kind), all = elements(after, kind);
     const auto imagesOf = [&](const TopoDS_Shape& element) {
-      std::vector<TopoDS_Shape> images;
-      for (TopExp_Explorer part(sewing.ModifiedSubShape(element), kind); part.More(); part.Next())
-        if (after.Contains(part.Current())) images.push_back(part.Current());
-      return images;
+      std::vector<TopoDS_Shape> parts;
+      for (TopExp_Explorer part(image(element), kind); part.More(); part.Next())
+        if (all.Contains(part.Current())) parts.push_back(part.Current());
+      return parts;
     };
-    for (int i = 1; i <= before.Extent(); ++i)
-      for (const auto& image : imagesOf(before(i)))
-        if (!result.number.IsBound(image) && apart.number.IsBound(before(i)))
-          result.number.Bind(image, apart.number(before(i)));
+    for (int i = 1; i <= own.Extent(); ++i)
+      for (const auto& part : imagesOf(own(i)))
+        if (!result.number.IsBound(part) && before.number.IsBound(own(i)))
+          result.number.Bind(part, before.number(own(i)));
     if (auto* const images = result.images(kind))
-      for (const auto& copies : *apart.images(kind)) {
+      for (const auto& copies : *before.images(kind)) {
         auto& named = images->emplace_back();
         for (const auto& copy : copies)
-          for (const auto& image : imagesOf(copy)) named.push_back(image);
+          for (const auto& part : imagesOf(copy)) named.push_back(part);
       }
   }
   return result;
 }
 
+Traced sewn(const Traced& apart, double tolerance) {
+  BRepBuilderAPI_Sewing sewing(tolerance);
+  sewing.Add(apart.shape);
+  sewing.Perform();
+  const TopoDS_Shape whole = sewing.SewedShape();
+  if (whole.IsNull() || elements(whole, TopAbs_FACE).Extent() != elements(apart.shape, TopAbs_FACE).Extent())
+    return apart;
+  return followed(apart, whole,
+                  [&](const TopoDS_Shape& element) { return sewing.ModifiedSubShape(element); });
+}
+
+Traced divided(const Traced& whole) {
+  const DividedShape parts = dividedAtCreases(whole.shape);
+  if (parts.shape.IsNull()) return whole;
+  return followed(whole, parts.shape,
+                  [&](const TopoDS_Shape& element) { return parts.history->Apply(element); });
+}
+
+/// \param otherwise of what is no element of the input
 std::string nameOf(const TopoDS_Shape& element, const Traced& traced, const std::string& prefix,
-                   int fallback) {
-  return prefix + std::to_string(traced.number.IsBound(element) ? traced.number(element) : fallback);
+                   const std::string& otherwise) {
+  return traced.number.IsBound(element) ? prefix + std::to_string(traced.number(element)) : otherwise;
 }
 
 void collectFaces(const Traced& traced, CadModel& model) {
@@ -125,7 +141,7 @@ void collectFaces(const Traced& traced, CadModel& model) {
       if (!solidOfFace.IsBound(face.Current())) solidOfFace.Bind(face.Current(), s - 1);
   for (int i = 1; i <= faces.Extent(); ++i) {
     CadFace& entry = model.faces.emplace_back();
-    entry.name = nameOf(faces(i), traced, "Face", i);
+    entry.name = nameOf(faces(i), traced, "Face", "Face" + std::to_string(i));
     entry.face = TopoDS::Face(faces(i).Oriented(TopAbs_FORWARD));
     entry.surface = BRep_Tool::Surface(entry.face);
     if (entry.surface.IsNull())
@@ -153,9 +169,15 @@ void collectEdges(const Traced& traced, CadModel& model) {
     model.vertices.emplace_back(p.X(), p.Y(), p.Z());
   }
   model.edgeNumbers = elements(traced.shape, TopAbs_EDGE);
+  TopTools_IndexedDataMapOfShapeListOfShape facesOfEdge;
+  TopExp::MapShapesAndAncestors(traced.shape, TopAbs_EDGE, TopAbs_FACE, facesOfEdge);
+  const auto faceAt = [&](const TopoDS_Shape& edge) {
+    const auto* const faces = facesOfEdge.Seek(edge);
+    return faces && !faces->IsEmpty() ? nameOf(faces->First(), traced, "Face", "") : "";
+  };
   for (int i = 1; i <= model.edgeNumbers.Extent(); ++i) {
     CadEdge& entry = model.edges.emplace_back();
-    entry.name = nameOf(model.edgeNumbers(i), traced, "Edge", i);
+    entry.name = nameOf(model.edgeNumbers(i), traced, "Edge", faceAt(model.edgeNumbers(i)));
     entry.edge = TopoDS::Edge(model.edgeNumbers(i).Oriented(TopAbs_FORWARD));
     entry.degenerate = BRep_Tool::Degenerated(entry.edge);
     const TopoDS_Vertex start = TopExp::FirstVertex(entry.edge), end = TopExp::LastVertex(entry.edge);
@@ -171,7 +193,7 @@ void collectEdges(const Traced& traced, CadModel& model) {
 }  // namespace
 
 CadModel cadModel(const Shape& shape, double gap) {
-  Traced traced = copied(shape.topology(), shape.numbering());
+  Traced traced = divided(copied(shape.topology(), shape.numbering()));
   CadModel model;
   model.sewn =
       gap > 0 && shape.solidCount() == 0 && shape.faceCount() > 1 && connectedGroups(traced.shape) > 1;
