@@ -21,8 +21,9 @@
 namespace trimquad {
 namespace {
 
-/// Smallest angle of a crease, radians: what is less is a matter of rounding in the program that wrote it.
-constexpr double kSmallestCrease = std::numbers::pi / 180;
+/// Smallest angle of a crease, radians. A single surface rounds a slighter one within the tolerance with
+/// fewer poles than two that meet in it.
+constexpr double kSmallestCrease = 10 * std::numbers::pi / 180;
 /// Places along a line where its angle is measured, and how far from it, by the range of the parameter:
 /// twice, since across a crease the angle does not depend on it.
 constexpr int kPlaces = 16;
