@@ -6,11 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <set>
 #include <string>
 
 #include "trimquad/base/parallel.h"
-#include "trimquad/mesh/triangle_surface.h"
+#include "trimquad/spline/fit_control.h"
 #include "trimquad/spline/parameter_smoothing.h"
 
 namespace trimquad {
@@ -64,13 +63,8 @@ constexpr double kNearWithMany = 1.5;
 constexpr double kFewTurned = 0.05;
 /// Rounds that are spent on getting rid of folds within what is enough.
 constexpr int kFoldPatience = 8;
-/// Rounds that are spent on getting rid of bulges between samples; the part of what is enough from which on
-/// they are some, for they are looked for in places.
+/// Rounds that are spent on getting rid of bulges between samples.
 constexpr int kBulgePatience = 10;
-constexpr double kAway = 0.95;
-/// Which part of its knot rectangle a bulge stands for in the fit, how many times more when it comes again;
-/// part of the rectangle up to which another one is the same.
-constexpr double kBulgePart = 0.125, kBulgeAgain = 4, kSameBulge = 0.25;
 /// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
 /// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
 /// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
@@ -81,9 +75,6 @@ constexpr int kMaxSpacings = 6, kMaxSpacedCorrections = 4;
 /// Part of the way to an opposite sheet that a surface should not be farther away than, and how many times
 /// closer than elsewhere it is to stay for that at most.
 constexpr double kOwnPart = 0.4, kMostCloser = 4;
-/// Part of the control samples at most that may have started from bad parameters.
-constexpr double kFewLost = 0.01;
-
 std::string shortNumber(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
@@ -102,7 +93,7 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       maxWork_(std::min(options.maxWork, std::numeric_limits<long>::max() - progress.work()) +
                progress.work()),
       progress_(progress),
-      triangles_(triangleTree(region.mesh)),
+      fitted_(region, tolerance_, enough_),
       policy_(policy),
       foldSpots_(policy.folds),
       slides_(options.slides && !policy.several) {}
@@ -172,7 +163,7 @@ void FitRounds::keepSheetsApart() {
     progress_.check();
     for (int i = begin; i < end; ++i) {
       auto& s = samples_[i];
-      const auto opposite = triangles_.closestFacing(s.point, -s.meshNormal, tolerance_ / kOwnPart);
+      const auto opposite = fitted_.triangles().closestFacing(s.point, -s.meshNormal, tolerance_ / kOwnPart);
       if (!opposite) continue;
       const double closer = tolerance_ / (kOwnPart * std::sqrt(opposite->squaredDistance));
       s.weight *= std::pow(std::clamp(closer, 1.0, kMostCloser), 2);
@@ -193,7 +184,9 @@ std::vector<std::vector<Datum>> FitRounds::dataOf(const std::vector<SurfaceSampl
 /// The surfaces through the samples at their parameters, and their deviation.
 void FitRounds::solve() {
   auto data = dataOf(samples_, emphasis_);
-  addBulges(data);
+  bulgeSpots_.appendTo(data, [&](const FitPlace& x) {
+    return fitted_.closest(result_.surfaces[x.chart].point(x.parameter[0], x.parameter[1]));
+  });
   auto surfaces = leastSquares(data);
   for (int attempt = 0; !surfaces && attempt < 4; ++attempt) {
     stiffen(100);
@@ -232,7 +225,7 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
       const SplineLine &u = space(at.chart).u, &v = space(at.chart).v;
       const bool near = !limited && move[0] <= u.width(u.spanOf(at.parameter[0])) &&
                         move[1] <= v.width(v.spanOf(at.parameter[1]));
-      turnedOver[i] = !s.agrees(normal) && !facesLikewise(jet.s, normal);
+      turnedOver[i] = !s.agrees(normal) && !fitted_.facesLikewise(jet.s, normal);
       if (!near || turnedOver[i] || isHeld(s)) {
         feet[i] = from;
         continue;
@@ -242,12 +235,6 @@ Deviation FitRounds::measure(std::vector<SurfaceSample>& samples, std::vector<Fi
     }
   });
   return deviationOf(samples, turnedOver);
-}
-
-/// Whether the region faces that way within what is allowed of a point: small curls of it may be flattened.
-bool FitRounds::facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const {
-  const auto hit = triangles_.closestFacing(p, normal);
-  return hit && hit->squaredDistance <= enough_ * enough_;
 }
 
 /// Of the samples that lie farther away than that.
@@ -342,40 +329,6 @@ void FitRounds::returnToMap(int sample) {
   emphasis_[sample] = kFoldEmphasis;
 }
 
-/// Each bulge is one of the places of the fit from now on, to come back to the region from where the surface
-/// is; what comes again counts more. Whether there are any.
-bool FitRounds::noteBulges(const std::vector<FitPlace>& bulges) {
-  std::set<BulgeSpot*> again;
-  const std::size_t before = bulgeSpots_.size();
-  bulgeSpots_.reserve(before + bulges.size());
-  for (const auto& x : bulges) {
-    const auto known = std::find_if(bulgeSpots_.begin(), bulgeSpots_.end(), [&](const BulgeSpot& spot) {
-      return spot.at.chart == x.chart &&
-             ((x.parameter - spot.at.parameter).cwiseAbs().array() <= kSameBulge * spot.reach.array()).all();
-    });
-    if (known == bulgeSpots_.end()) {
-      const Eigen::Vector2d reach = knotIntervals(x);
-      bulgeSpots_.push_back({x, reach, kBulgePart * reach.prod()});
-    } else if (known - bulgeSpots_.begin() < std::ptrdiff_t(before)) {
-      again.insert(&*known);
-    }
-  }
-  for (auto* spot : again) spot->weight *= kBulgeAgain;
-  return !bulges.empty();
-}
-
-void FitRounds::addBulges(std::vector<std::vector<Datum>>& data) const {
-  for (const auto& spot : bulgeSpots_) {
-    const auto& x = spot.at.parameter;
-    data[spot.at.chart].push_back(
-        {x, closest(result_.surfaces[spot.at.chart].point(x[0], x[1])), spot.weight});
-  }
-}
-
-Eigen::Vector3d FitRounds::closest(const Eigen::Vector3d& p) const {
-  return region_.surface ? region_.surface->closest(p).point : triangles_.closest(p).point;
-}
-
 /// On new knots: the map's parameters, which are smooth where the map is, or those corrected on the coarser
 /// knots, which carry a trace of these but are free of a rough map's noise; whichever bring the surfaces
 /// closer.
@@ -412,8 +365,8 @@ void FitRounds::keepIfEnough() {
       (folds > 0 ? folds >= kept_->folded.size()
                  : kept_->folded.empty() && deviation_.max > 0.95 * kept_->maxDeviation))
     return;
-  if (folds > 0 &&
-      !stayNear(result_.surfaces, samples_, cellsAround(cells_, deviation_.turnedOver), triangles_, enough_))
+  if (folds > 0 && !stayNear(result_.surfaces, samples_, cellsAround(cells_, deviation_.turnedOver),
+                             fitted_.triangles(), enough_))
     return;
   const auto failing = failing_;
   const auto turned = turned_;
@@ -427,65 +380,14 @@ void FitRounds::keepIfEnough() {
   turned_ = turned;
 }
 
-/// Gives those samples whose feet are too far the parameters of the nearest of the fit's own, which have been
-/// corrected: from the map's, the way to a foot may end on the other side of a sharp bend. Whether there are
-/// any, and few enough that this can be the reason.
-bool FitRounds::startNearby(std::vector<SurfaceSample>& control, double tolerance) const {
-  std::vector<SurfaceSample*> lost;
-  for (auto& s : control)
-    if (!(std::abs(s.distance) <= tolerance)) lost.push_back(&s);
-  if (lost.empty() || double(lost.size()) > kFewLost * double(control.size())) return false;
-  parallelParts(int(lost.size()), threads_, [&](int begin, int end) {
-    progress_.check();
-    for (int i = begin; i < end; ++i) {
-      const SurfaceSample* nearest = nullptr;
-      for (const auto& s : samples_)
-        if (s.normal.dot(lost[i]->normal) > 0 &&
-            (!nearest ||
-             (s.point - lost[i]->point).squaredNorm() < (nearest->point - lost[i]->point).squaredNorm()))
-          nearest = &s;
-      if (!nearest) continue;
-      lost[i]->chart = nearest->chart;
-      lost[i]->parameter = nearest->parameter;
-    }
-  });
-  return true;
-}
-
-/// Each sample counts for the chart where its foot lies. The largest of them is the region's deviation.
-std::vector<ChartDeviation> FitRounds::deviationsByChart(const std::vector<SurfaceSample>& control,
-                                                         const std::vector<FitPlace>& feet) const {
-  std::vector<ChartDeviation> result(result_.surfaces.size());
-  std::vector<int> counts(result.size(), 0);
-  const auto take = [&](const std::vector<SurfaceSample>& samples, const std::vector<FitPlace>& places,
-                        bool independent) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      ChartDeviation& d = result[places[i].chart];
-      const double distance = std::abs(samples[i].distance);
-      if (distance >= d.max) {
-        d.max = distance;
-        d.where = samples[i].point;
-      }
-      if (!independent) continue;
-      d.rms += distance * distance;
-      ++counts[places[i].chart];
-    }
-  };
-  take(control, feet, true);
-  take(samples_, feet_, false);
-  for (std::size_t c = 0; c < result.size(); ++c)
-    result[c].rms = std::sqrt(result[c].rms / std::max(1, counts[c]));
-  return result;
-}
-
 /// Whether other samples keep the tolerance as well; counts bulges between them too. \param folds part of
 /// them that may be turned over
 bool FitRounds::verified(double tolerance, double folds) {
   auto control = makeSamples(true);
   std::vector<FitPlace> feet;
   Deviation found = measure(control, feet);
-  if (startNearby(control, tolerance)) found = measure(control, feet);
-  result_.deviations = deviationsByChart(control, feet);
+  if (startNearby(control, samples_, tolerance, threads_, progress_)) found = measure(control, feet);
+  result_.deviations = deviationsByChart(int(result_.surfaces.size()), {control, feet}, {samples_, feet_});
   if (policy_.failsAtFeet) moveTo(feet, control);
   result_.bulges = 0;
   result_.maxDeviation = std::max(found.max, deviation_.max);
@@ -506,7 +408,8 @@ bool FitRounds::verified(double tolerance, double folds) {
   }
   between_ = lookBetweenFeet(deviation_, true);
   result_.bulges = int(between_.away.size());
-  newBulges_ = noteBulges(between_.away) || newBulges_;
+  newBulges_ =
+      bulgeSpots_.note(between_.away, [&](const FitPlace& x) { return knotIntervals(x); }) || newBulges_;
   for (const auto& x : between_.away) {
     const auto bulge = bulgeAt(x);
     if (!bulge) continue;
@@ -530,46 +433,20 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
-/// Where a surface is farther away than is enough, with some reserve for the places beside it where the
-/// tolerance leaves any; none elsewhere. Beyond the region's boundary only what it is above or below counts.
-/// Of a true surface the triangles are a coarse picture, so that it is asked where these are far.
-std::optional<FitRounds::Bulge> FitRounds::bulgeAt(const FitPlace& x) const {
-  const auto jet = result_.surfaces[x.chart].jet(x.parameter[0], x.parameter[1]);
-  const double limit = std::max(tolerance_, kAway * enough_);
-  const auto hit = triangles_.closest(jet.s);
-  if (hit.squaredDistance <= limit * limit) return {};
-  const Eigen::Vector3d there = closest(jet.s), away = there - jet.s;
-  const double distance =
-      isOnBoundary(hit) ? std::abs(away.dot(jet.su.cross(jet.sv).normalized())) : away.norm();
-  if (!(distance > limit)) return {};
-  return Bulge{distance, there};
-}
-
-/// Exact: barycentric coordinates on an edge or in a corner are zero.
-bool FitRounds::isOnBoundary(const TriangleTree::Hit& hit) const {
-  const auto& mesh = region_.mesh;
-  const auto& t = triangles_.triangles()[hit.triangle];
-  int corner = 0;
-  const auto zeros = (hit.barycentric.array() == 0).count();
-  if (zeros == 0) return false;
-  if (zeros == 2) {
-    hit.barycentric.maxCoeff(&corner);
-    return mesh.is_boundary(VertexHandle(t[corner]));
-  }
-  hit.barycentric.minCoeff(&corner);
-  const auto h = mesh.find_halfedge(VertexHandle(t[(corner + 1) % 3]), VertexHandle(t[(corner + 2) % 3]));
-  return mesh.is_boundary(mesh.edge_handle(h));
+std::optional<Bulge> FitRounds::bulgeAt(const FitPlace& x) const {
+  return fitted_.bulgeAt(result_.surfaces[x.chart].jet(x.parameter[0], x.parameter[1]));
 }
 
 /// What the surfaces are between the feet, where they come close.
 BetweenFeet FitRounds::lookBetweenFeet(const Deviation& deviation, bool forBulges) const {
   if (deviation.max > kClose * tolerance_) return {};
-  FitView view{
-      [&](int chart, const FitPlace& x) { return seenFrom(chart, x); },
-      [&](const FitPlace& x) { return isInChart(x); },
-      [&](const FitPlace& x) { return knotInterval(x); },
-      [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) { return facesLikewise(p, normal); },
-      {}};
+  FitView view{[&](int chart, const FitPlace& x) { return seenFrom(chart, x); },
+               [&](const FitPlace& x) { return isInChart(x); },
+               [&](const FitPlace& x) { return knotInterval(x); },
+               [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+                 return fitted_.facesLikewise(p, normal);
+               },
+               {}};
   if (forBulges) view.isAway = [&](const FitPlace& x) { return bulgeAt(x).has_value(); };
   BetweenFeet result = betweenFeet(result_.surfaces, samples_, feet_, cells_, view, threads_, progress_);
   if (forBulges)

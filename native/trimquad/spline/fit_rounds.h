@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "trimquad/base/error.h"
-#include "trimquad/mesh/aabb_tree.h"
 #include "trimquad/spline/deviation.h"
+#include "trimquad/spline/fit_bulges.h"
 #include "trimquad/spline/fit_folds.h"
 #include "trimquad/spline/fit_surface.h"
+#include "trimquad/spline/fitted_region.h"
 #include "trimquad/spline/spline_space.h"
 
 namespace trimquad {
@@ -125,26 +126,12 @@ class FitRounds {
     BetweenFeet between;
   };
 
-  /// Where surfaces had bulges between feet, at least once.
-  struct BulgeSpot {
-    FitPlace at;
-    Eigen::Vector2d reach;  ///< quads, along u and v
-    double weight;          ///< of the surface's way back to the region there, quads^2
-  };
-
   FittedSurface rounds();
   void continueFrom(const FittedSurface& fitted);
   void takeSamples();
   void keepSheetsApart();
   void solve();
-  bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
-  /// How far a surface is from the region at a place, and the region's point there.
-  struct Bulge {
-    double distance;
-    Eigen::Vector3d point;
-  };
   std::optional<Bulge> bulgeAt(const FitPlace& x) const;
-  bool isOnBoundary(const TriangleTree::Hit& hit) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples, double above);
   static std::vector<FitPlace> places(const std::vector<SurfaceSample>& samples,
@@ -158,16 +145,10 @@ class FitRounds {
   void stopSliding();
   void unfold(std::vector<int> turnedOver, const BetweenFeet& between);
   void returnToMap(int sample);
-  Eigen::Vector3d closest(const Eigen::Vector3d& p) const;
-  void addBulges(std::vector<std::vector<Datum>>& data) const;
-  bool noteBulges(const std::vector<FitPlace>& bulges);
   void chooseParameters();
   void keepIfEnough();
-  bool startNearby(std::vector<SurfaceSample>& control, double tolerance) const;
   bool verified(double tolerance, double folds);
   std::shared_ptr<const FittedSurface::Continuation> continuation();
-  std::vector<ChartDeviation> deviationsByChart(const std::vector<SurfaceSample>& control,
-                                                const std::vector<FitPlace>& feet) const;
   double threshold(double largest) const;
   bool stalled() const { return best_ > 0.5 * atRefinement_; }
   bool correctionPays() const;
@@ -183,12 +164,12 @@ class FitRounds {
   int poles() const;
   Error unreachable() const;
 
-  const TriangleTree triangles_;  ///< of the region
+  const FittedRegion fitted_;
   const Policy policy_;
   std::vector<SplineSpace> sampledOver_;  ///< by chart of several surfaces: over whose knots `samples_` are
   std::optional<FittedSurface> kept_;     ///< within what is enough
   FoldSpots foldSpots_;
-  std::vector<BulgeSpot> bulgeSpots_;
+  BulgeSpots bulgeSpots_;
   Deviation deviation_, previous_;
   BetweenFeet between_;                                    ///< the feet of `samples_`
   Eigen::Vector3d turnedPoint_ = Eigen::Vector3d::Zero();  ///< the first of those turned over

@@ -1,0 +1,56 @@
+#include "trimquad/spline/fitted_region.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "trimquad/mesh/triangle_surface.h"
+
+namespace trimquad {
+namespace {
+
+/// The part of what is enough from which on there are bulges: they are looked for in places.
+constexpr double kAway = 0.95;
+
+}  // namespace
+
+FittedRegion::FittedRegion(const Region& region, double tolerance, double enough)
+    : region_(region), triangles_(triangleTree(region.mesh)), tolerance_(tolerance), enough_(enough) {}
+
+Eigen::Vector3d FittedRegion::closest(const Eigen::Vector3d& p) const {
+  return region_.surface ? region_.surface->closest(p).point : triangles_.closest(p).point;
+}
+
+bool FittedRegion::facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const {
+  const auto hit = triangles_.closestFacing(p, normal);
+  return hit && hit->squaredDistance <= enough_ * enough_;
+}
+
+std::optional<Bulge> FittedRegion::bulgeAt(const SplineSurface::Jet& jet) const {
+  const double limit = std::max(tolerance_, kAway * enough_);
+  const auto hit = triangles_.closest(jet.s);
+  if (hit.squaredDistance <= limit * limit) return {};
+  const Eigen::Vector3d there = closest(jet.s), away = there - jet.s;
+  const double distance =
+      isOnBoundary(hit) ? std::abs(away.dot(jet.su.cross(jet.sv).normalized())) : away.norm();
+  if (!(distance > limit)) return {};
+  return Bulge{distance, there};
+}
+
+/// Exact: barycentric coordinates on an edge or in a corner are zero.
+bool FittedRegion::isOnBoundary(const TriangleTree::Hit& hit) const {
+  const auto& mesh = region_.mesh;
+  const auto& t = triangles_.triangles()[hit.triangle];
+  int corner = 0;
+  const auto zeros = (hit.barycentric.array() == 0).count();
+  if (zeros == 0) return false;
+  if (zeros == 2) {
+    hit.barycentric.maxCoeff(&corner);
+    return mesh.is_boundary(VertexHandle(t[corner]));
+  }
+  hit.barycentric.minCoeff(&corner);
+  const auto h = mesh.find_halfedge(VertexHandle(t[(corner + 1) % 3]), VertexHandle(t[(corner + 2) % 3]));
+  return mesh.is_boundary(mesh.edge_handle(h));
+}
+
+}  // namespace trimquad
