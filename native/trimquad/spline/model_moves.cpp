@@ -114,12 +114,13 @@ ChartDeviation ModelTrimmer::deviationOfSheet(int sheet, const SplineSurface& su
                      : deviationOf(r, surface, closely);
 }
 
-/// Whether sheets of a region may become these surfaces.
+/// Whether sheets of a region may become these surfaces: also between the samples of the region's fit, since
+/// they have more knots than that.
 bool ModelTrimmer::acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const {
   const int r = sheetRegion_[surfaces.begin()->first];
   const double most = std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation);
   return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& ofSheet) {
-    return deviationOfSheet(ofSheet.first, ofSheet.second, false).max <= most;
+    return deviationOfSheet(ofSheet.first, ofSheet.second, true).max <= most;
   });
 }
 
