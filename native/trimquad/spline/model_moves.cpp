@@ -82,16 +82,14 @@ auto ModelTrimmer::keptSamples(int r, const ByteKey& key, const Make& make) cons
       .first;
 }
 
-/// Of a region of one chart from a surface that may be its own; at samples that follow from the region and
-/// its fit, or as many as that surface's knots ask for.
-ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface, bool closely) const {
-  const SplineSurface& dense = closely ? surface : fitted_[r]->surface;
+/// Of a region of one chart from a surface that may be its own; at as many samples as that surface's knots
+/// ask for.
+ChartDeviation ModelTrimmer::deviationOf(int r, const SplineSurface& surface) const {
   ByteKey key;
-  key.add(numberOfRegion(r)).add(memory_.numberOf(dense));
-  const auto make = [&] {
-    return samplesFor(dense, model_.regions[r], *maps_[r], fitted_[r]->chart, threads_, progress_);
-  };
-  return measured(r, surface, key, [&] { return closely ? make() : *keptSamples(r, key, make); });
+  key.add(numberOfRegion(r));
+  return measured(r, surface, std::move(key), [&] {
+    return samplesFor(surface, model_.regions[r], *maps_[r], fitted_[r]->chart, threads_, progress_);
+  });
 }
 
 /// The same of one of a region's several charts.
@@ -107,20 +105,18 @@ ChartDeviation ModelTrimmer::deviationOfChart(int r, int chart, const SplineSurf
 }
 
 /// How far a sheet's region, or chart of it, is from this surface.
-/// \param closely whether single surfaces are measured between their samples, too
-ChartDeviation ModelTrimmer::deviationOfSheet(int sheet, const SplineSurface& surface, bool closely) const {
+/// Single surfaces are measured between the samples of their fit, too: moved ones have more knots than that.
+ChartDeviation ModelTrimmer::deviationOfSheet(int sheet, const SplineSurface& surface) const {
   const int r = sheetRegion_[sheet];
-  return borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface)
-                     : deviationOf(r, surface, closely);
+  return borders_[r] ? deviationOfChart(r, sheet - firstSheet_[r], surface) : deviationOf(r, surface);
 }
 
-/// Whether sheets of a region may become these surfaces: also between the samples of the region's fit, since
-/// they have more knots than that.
+/// Whether sheets of a region may become these surfaces.
 bool ModelTrimmer::acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const {
   const int r = sheetRegion_[surfaces.begin()->first];
   const double most = std::max(lastResort ? enough_ : kMovedDeviation * tolerance_, fitted_[r]->maxDeviation);
   return std::all_of(surfaces.begin(), surfaces.end(), [&](const auto& ofSheet) {
-    return deviationOfSheet(ofSheet.first, ofSheet.second, true).max <= most;
+    return deviationOfSheet(ofSheet.first, ofSheet.second).max <= most;
   });
 }
 
@@ -136,7 +132,7 @@ std::map<int, std::vector<SplineModel::MovedSurface>> ModelTrimmer::movedRegions
   for (int sheet = 0; sheet < int(sheets_.size()); ++sheet) {
     const auto& surface = sheets_[sheet].surface;
     if (const int r = sheetRegion_[sheet]; moved_.contains(r))
-      result[r].push_back({surface, deviationOfSheet(sheet, surface, true)});
+      result[r].push_back({surface, deviationOfSheet(sheet, surface)});
   }
   return result;
 }

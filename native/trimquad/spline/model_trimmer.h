@@ -108,9 +108,9 @@ class ModelTrimmer {
   ChartDeviation measured(int r, const SplineSurface& surface, ByteKey key, const Samples& samples) const;
   template <class Make>
   auto keptSamples(int r, const ByteKey& key, const Make& make) const;
-  ChartDeviation deviationOf(int r, const SplineSurface& surface, bool closely) const;
+  ChartDeviation deviationOf(int r, const SplineSurface& surface) const;
   ChartDeviation deviationOfChart(int r, int chart, const SplineSurface& surface) const;
-  ChartDeviation deviationOfSheet(int sheet, const SplineSurface& surface, bool closely) const;
+  ChartDeviation deviationOfSheet(int sheet, const SplineSurface& surface) const;
   bool acceptsMoved(const std::map<int, SplineSurface>& surfaces, bool lastResort) const;
   std::vector<SheetBody> bodies() const;
   SheetMover mover() const;
