@@ -31,8 +31,13 @@ std::optional<Bulge> FittedRegion::bulgeAt(const SplineSurface::Jet& jet) const 
   const auto hit = triangles_.closest(jet.s);
   if (hit.squaredDistance <= limit * limit) return {};
   const Eigen::Vector3d there = closest(jet.s), away = there - jet.s;
-  const double distance =
-      isOnBoundary(hit) ? std::abs(away.dot(jet.su.cross(jet.sv).normalized())) : away.norm();
+  double distance = away.norm();
+  if (isOnBoundary(hit)) {
+    // What is farther beyond the boundary than above or below it is trimmed off.
+    const Eigen::Vector3d normal = jet.su.cross(jet.sv).normalized();
+    distance = std::abs(away.dot(normal));
+    if (hit.squaredDistance > 2 * distance * distance) return {};
+  }
   if (!(distance > limit)) return {};
   return Bulge{distance, there};
 }

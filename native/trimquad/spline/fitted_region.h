@@ -26,8 +26,9 @@ class FittedRegion {
   /// Whether the region faces that way within what is enough of a point: small curls of it may be flattened.
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
   /// Where a surface is farther away than is enough, with some reserve for the places beside it where the
-  /// tolerance leaves any; none elsewhere. Beyond the region's boundary only what it is above or below
-  /// counts. Of a true surface the triangles are a coarse picture, so that it is asked where these are far.
+  /// tolerance leaves any; none elsewhere. Beyond the boundary it counts where it is less far beyond than
+  /// above or below: the rest is trimmed off. Of a true surface the triangles are a coarse picture, so that
+  /// it is asked where these are far.
   std::optional<Bulge> bulgeAt(const SplineSurface::Jet& jet) const;
 
  private:
