@@ -12,11 +12,6 @@ namespace {
 
 using Parameters = IntersectionCurve::Parameters;
 
-/// Sine of the angle between the sheets.
-double crossingAngle(const SplineSurface::Jet& a, const SplineSurface::Jet& b) {
-  return normal(a).cross(normal(b)).norm();
-}
-
 /// From 0 to 1, without first and second derivatives at both ends; with derivatives by x.
 std::array<double, 3> smootherStep(double x) {
   if (!(x > 0)) return {0, 0, 0};
@@ -26,6 +21,10 @@ std::array<double, 3> smootherStep(double x) {
 }
 
 }  // namespace
+
+double crossingAngle(const SplineSurface::Jet& a, const SplineSurface::Jet& b) {
+  return normal(a).cross(normal(b)).norm();
+}
 
 IntersectionCurve::IntersectionCurve(const Sheet& a, const Sheet& b, SpaceCurve reference,
                                      std::vector<Guess> guesses, double reach, double smallestAngle,

@@ -12,6 +12,9 @@ namespace trimquad {
 /// Sine of the angle between sheets below which their intersection says little about where they should meet.
 inline constexpr double kSmallestCrossing = 0.05;
 
+/// Sine of the angle between the tangent planes.
+double crossingAngle(const SplineSurface::Jet& a, const SplineSurface::Jet& b);
+
 /// A stretch of a curve on which two sheets touch without an edge worth the name: where an edge between them
 /// changes from a ridge to a valley, or ends in a corner in which both are tangent.
 struct TangentStretch {

@@ -395,8 +395,14 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
     guess.at << sampled.foot[0][i], sampled.foot[1][i];
     guesses.push_back(guess);
   }
-  IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), std::move(guesses),
-                                 reach, smallestAngle, tangent);
+  IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), guesses, reach,
+                                 smallestAngle, tangent);
+  // In a wedge that closes towards an end there is none in the end itself.
+  for (const auto* guess : {&guesses.front(), &guesses.back()})
+    if (smallestAngle >= kSmallestCrossing &&
+        crossingAngle(sides[0].sheet->jet(guess->at.head<2>()), sides[1].sheet->jet(guess->at.tail<2>())) <
+            smallestAngle)
+      return {};
   // The ends themselves may lie beyond the surfaces' common point; the corners settle those.
   constexpr double end = 0.5 / 64;
   const int tests = smallestAngle < kSmallestCrossing ? 2048 : 64;
