@@ -1,10 +1,10 @@
 #include "trimquad/spline/fitted_region.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "trimquad/mesh/triangle_surface.h"
+#include "trimquad/spline/sheet.h"
 
 namespace trimquad {
 namespace {
@@ -34,8 +34,7 @@ std::optional<Bulge> FittedRegion::bulgeAt(const SplineSurface::Jet& jet) const 
   double distance = away.norm();
   if (isOnBoundary(hit)) {
     // What is farther beyond the boundary than above or below it is trimmed off.
-    const Eigen::Vector3d normal = jet.su.cross(jet.sv).normalized();
-    distance = std::abs(away.dot(normal));
+    distance = std::abs(away.dot(normal(jet)));
     if (hit.squaredDistance > 2 * distance * distance) return {};
   }
   if (!(distance > limit)) return {};

@@ -192,7 +192,7 @@ void appendCornerMoves(const SheetCorner& corner, int moving, const std::vector<
       if (!(rank(other.sheet) < rank(use.sheet)) || (still && !(rank(other.sheet) < rank(still->sheet))))
         continue;
       const auto jet = sheets[other.sheet].jet(sheets[other.sheet].footPoint(corner.point, other.at));
-      if (normal(jet).cross(normal(at)).norm() > kSharp) continue;
+      if (crossingAngle(jet, at) > kSharp) continue;
       still = &other;
       there = jet;
     }

@@ -379,6 +379,12 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    double reach, double smallestAngle,
                                                    const std::vector<TangentStretch>& tangent,
                                                    const Progress& progress) {
+  const bool folded = smallestAngle < kSmallestCrossing;
+  // In a wedge that closes towards an end there is none in the end itself.
+  const auto angleAt = [&](std::size_t i) {
+    return crossingAngle(sides[0].sheet->jet(sampled.foot[0][i]), sides[1].sheet->jet(sampled.foot[1][i]));
+  };
+  if (!folded && std::min(angleAt(0), angleAt(sampled.s.size() - 1)) < smallestAngle) return {};
   std::vector<CurveSample<3>> samples;
   for (std::size_t i = 0; i < sampled.s.size(); ++i)
     samples.push_back({sampled.s[i], sampled.t[i], sampled.point[i], Eigen::Matrix3d::Identity()});
@@ -395,17 +401,11 @@ std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
     guess.at << sampled.foot[0][i], sampled.foot[1][i];
     guesses.push_back(guess);
   }
-  IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), guesses, reach,
-                                 smallestAngle, tangent);
-  // In a wedge that closes towards an end there is none in the end itself.
-  for (const auto* guess : {&guesses.front(), &guesses.back()})
-    if (smallestAngle >= kSmallestCrossing &&
-        crossingAngle(sides[0].sheet->jet(guess->at.head<2>()), sides[1].sheet->jet(guess->at.tail<2>())) <
-            smallestAngle)
-      return {};
+  IntersectionCurve intersection(*sides[0].sheet, *sides[1].sheet, std::move(reference), std::move(guesses),
+                                 reach, smallestAngle, tangent);
   // The ends themselves may lie beyond the surfaces' common point; the corners settle those.
   constexpr double end = 0.5 / 64;
-  const int tests = smallestAngle < kSmallestCrossing ? 2048 : 64;
+  const int tests = folded ? 2048 : 64;
   for (int i = 0; i < tests; ++i) {
     progress.check();
     const double at = std::clamp((i + 0.5) / tests, end, 1 - end);

@@ -59,7 +59,7 @@ std::vector<TrimPiece> freeEdge(const SampledCurve& sampled, const SheetSide& si
                                 const CurveCloseness& closeness, const Progress& progress);
 
 /// The curve in which two sheets cut each other along a model curve; null where the sine of the angle between
-/// them is below `smallestAngle`, but for tangent stretches.
+/// them is below `smallestAngle`, in the ends as well, but for tangent stretches.
 std::optional<IntersectionCurve> intersectionCurve(const SampledCurve& sampled,
                                                    const std::vector<SheetSide>& sides, double tolerance,
                                                    double reach, double smallestAngle,
