@@ -112,12 +112,42 @@ def _refit_faulty(result, checks, progress):
         return True
     at_fault = []
     for index, found in faulty.items():
-        item = result.regions[index]
-        advice = f"OpenCASCADE finds the fitted surface at fault ({found[0][1]}); use a smaller tolerance"
-        endless = all(fault == load().CHECK_DOES_NOT_END for _, fault in found)
-        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", advice, item.name, endless=endless)))
+        item, fault = result.regions[index], found[0][1]
+        crossed = None if fault.other is None else result.regions[faces[fault.other]["region"]]
+        if crossed and (crossed.fitted is None or _leave_out_as_crossing(item, crossed, result, progress)):
+            continue
+        endless = all(fault.what == load().CHECK_DOES_NOT_END for _, fault in found)
+        message = f"{_said_of(fault, item, crossed)}; use a smaller tolerance"
+        at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", message, item.name, endless=endless)))
     _refit_all(at_fault, result, progress)
     return bool(faulty)
+
+
+def _said_of(fault, item, crossed):
+    if not crossed:
+        return f"OpenCASCADE finds the fitted surface at fault ({fault.what})"
+    name = "another part of the region" if crossed is item else crossed.name
+    if fault.what == load().CHECK_DOES_NOT_END:
+        return f"OpenCASCADE's check of the fitted surface with that of {name} does not end"
+    return f"the fitted surface crosses that of {name}"
+
+
+def _leave_out_as_crossing(item, crossed, result, progress):
+    """Leaves a region out without another fit whose CAD faces cross those of another one. Whether they do."""
+    if crossed is item:
+        return False
+    if crossed not in item.crossings:
+        indices = (result.regions.index(r) for r in (item, crossed))
+        with progress.stage("check") as native_progress:
+            item.crossings[crossed] = load().FaceChecks(CHECKER).crossing_cad_faces(result.model, *indices, native_progress)
+    if not item.crossings[crossed]:
+        return False
+    first, second = item.crossings[crossed]
+    message = f"{first} crosses {second} in the input; trim them at each other, or convert them one by one"
+    fitted, item.fitted = item.fitted, None
+    item.error = Error("stage", "fit", message, item.name)
+    _leave_out(item, fitted, result)
+    return True
 
 
 def _refit_all(at_fault, result, progress):

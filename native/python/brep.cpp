@@ -87,6 +87,10 @@ void bindBrep(py::module_& m) {
         "The model with regions (by number) replaced by their parts.");
   m.def("assemble", &assemble, py::arg("spline"), Released());
   m.attr("CHECK_DOES_NOT_END") = kCheckDoesNotEnd;
+  py::class_<FaceFault>(m, "FaceFault")
+      .def(py::init<std::string, std::optional<int>>(), py::arg("what"), py::arg("other") = std::nullopt)
+      .def_readonly("what", &FaceFault::what)
+      .def_readonly("other", &FaceFault::other, "index of the face that it crosses, or None");
   py::class_<FaceChecks>(
       m, "FaceChecks",
       "OpenCASCADE's checks of a model's faces, and of pairs of them as its STEP file holds "
@@ -94,9 +98,13 @@ void bindBrep(py::module_& m) {
       .def(py::init<std::string>(), py::arg("checker"))
       .def("faults", &FaceChecks::faults, py::arg("spline"), py::arg("folded"), py::arg("threads"),
            py::arg("progress"), Released(),
-           "By face, what BRepCheck and the argument analysis of booleans find wrong with it and with pairs "
+           "By face, its FaceFaults: what BRepCheck and the argument analysis of booleans find wrong with it "
+           "and with pairs "
            "of it and another one. Pairs with a face in `folded` (indices) and such as are bent against each "
            "other come first; the others where nothing is wrong so far.")
+      .def("crossing_cad_faces", &FaceChecks::crossingCadFaces, py::arg("model"), py::arg("region_a"),
+           py::arg("region_b"), py::arg("progress"), Released(),
+           "Names of two CAD faces, one of each region, that cross each other as they are, or None.")
       .def("faults_of_whole", &FaceChecks::faultsOfWhole, py::arg("spline"), py::arg("progress"), Released(),
            "what they find wrong with the whole, also in memory, but for faces that cross others");
   m.def("face_order", &faceOrder, py::arg("spline"), Released(),

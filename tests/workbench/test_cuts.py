@@ -203,7 +203,7 @@ def test_a_region_that_was_left_out_is_taken_back_once_those_around_are_others(o
 
 
 def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch):
-    sets = []
+    native, sets = joining.load(), []
     # Of three regions around a corner, only one can stay: the one at fault, by those that are there.
     at_fault = {(0, 2, 4): 0, (0, 2): 0, (2, 4): 2, (0, 4): 4}
 
@@ -214,7 +214,7 @@ def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch
         def faults(self, model, *_):
             sets.append(tuple(k for k in (0, 2, 4) if k in {face["region"] for face in model.faces}))
             assert len(sets) < 30, sets
-            return [["crosses another"] if at_fault.get(sets[-1]) == face["region"] else [] for face in model.faces]
+            return [[native.FaceFault("crosses another")] if at_fault.get(sets[-1]) == face["region"] else [] for face in model.faces]
 
         def faults_of_whole(self, *_):
             return []
@@ -228,6 +228,26 @@ def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch
     monkeypatch.setattr(joining, "_fit_closer", lambda *_: False)
     result = box_in_regions()
     assert len(result.failed) == 2 and len(sets[-1]) == 1
+
+
+def crossing_sides():
+    """A shell of a plane and of a vault over it, which share an edge and cross half way."""
+    import FreeCAD
+    import Part
+
+    edges = []
+    for profile in (((0, 0, 0), (10, 0, 0)), ((0, 0, 0), (0, 0, 8), (6, 0, 0), (10, 0, -10))):
+        curve = Part.BezierCurve()
+        curve.setPoles([FreeCAD.Vector(*p) for p in profile])
+        edges.append(curve.toShape())
+    return Part.makeShell([edge.extrude(FreeCAD.Vector(0, 12, 0)) for edge in edges])
+
+
+def test_of_faces_that_cross_in_the_input_one_fails_and_both_are_named():
+    result = trimquad.convert(crossing_sides(), trimquad.Options(quads=100))
+    (failed,) = result.failed
+    assert "Face1 crosses Face2 in the input" in str(failed.error) or "Face2 crosses Face1" in str(failed.error)
+    assert all(r.refits == 0 for r in result.regions) and len(result.shape.Faces) == 1
 
 
 def test_fits_end_with_a_measure_of_work(monkeypatch):
@@ -278,7 +298,7 @@ def test_a_surface_at_fault_is_cut_first_where_it_bends_sharply(monkeypatch, rad
 
         def faults(self, spline, folded, threads, progress):
             whole = len(spline.faces) == 1 and spline is first
-            return [["Face1: SelfIntersect"] if whole else [] for _ in spline.faces]
+            return [[native.FaceFault("Face1: SelfIntersect")] if whole else [] for _ in spline.faces]
 
         def faults_of_whole(self, spline, progress):
             return []

@@ -111,7 +111,7 @@ def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tri
 
         def faults(self, model, folded, threads, progress):
             fault = native.CHECK_DOES_NOT_END if endless else "Face1: SelfIntersect"
-            return [[fault] if len(model.faces) == 1 else [] for _ in model.faces]
+            return [[native.FaceFault(fault)] if len(model.faces) == 1 else [] for _ in model.faces]
 
         def faults_of_whole(self, model, progress):
             return []

@@ -197,7 +197,7 @@ class _AlwaysAtFault:
 
     def faults(self, spline, folded, threads, progress):
         self.checks += 1
-        return [["Face1: SelfIntersect"]]
+        return [[self._native.FaceFault("Face1: SelfIntersect")]]
 
 
 def test_a_face_at_fault_is_fitted_again_and_then_refused_by_name(sheet, monkeypatch):

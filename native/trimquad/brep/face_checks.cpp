@@ -10,6 +10,7 @@
 
 #include "trimquad/base/byte_key.h"
 #include "trimquad/base/parallel.h"
+#include "trimquad/brep/cad_origin.h"
 #include "trimquad/brep/face_separation.h"
 #include "trimquad/brep/occt_guard.h"
 #include "trimquad/brep/occt_parts.h"
@@ -167,9 +168,9 @@ class Numbers {
 
 FaceChecks::FaceChecks(std::string checker) : checker_(std::move(checker)) {}
 
-std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& model,
-                                                         const std::vector<int>& folded, int threads,
-                                                         const Progress& progress) {
+std::vector<std::vector<FaceFault>> FaceChecks::faults(const SplineModel& model,
+                                                       const std::vector<int>& folded, int threads,
+                                                       const Progress& progress) {
   const auto faces = assembledFaces(model);
   std::vector<Shape> inFile;
   // Written and read where pairs are to be checked.
@@ -181,7 +182,7 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   std::vector<int> number;
   for (const auto& face : model.faces) number.push_back(numbers.of(face));
 
-  std::vector<std::vector<std::string>> result(faces.size());
+  std::vector<std::vector<FaceFault>> result(faces.size());
   /// Checks of faces as they are, or, twice the same, of those in the file with themselves, or of pairs
   /// there.
   const auto check = [&](const std::vector<std::vector<int>>& groups) {
@@ -213,9 +214,14 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
     });
     for (std::size_t k = 0; k < unknown.size(); ++k) known_[keys[unknown[k]]] = found[k];
     for (std::size_t k = 0; k < groups.size(); ++k)
-      for (const int f : std::set<int>(groups[k].begin(), groups[k].end())) {
-        const auto& faults = known_[keys[k]];
-        result[f].insert(result[f].end(), faults.begin(), faults.end());
+      for (const std::string& what : known_[keys[k]]) {
+        const int a = groups[k].front(), b = groups[k].back();
+        if (a == b) {
+          result[a].push_back({what, {}});
+        } else {
+          result[a].push_back({what, b});
+          result[b].push_back({what, a});
+        }
       }
   };
   const auto isClean = [&](int f) { return result[f].empty(); };
@@ -235,6 +241,33 @@ std::vector<std::vector<std::string>> FaceChecks::faults(const SplineModel& mode
   if (std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
     checkPairs(closePairs(model, facesInFile()));
   return result;
+}
+
+std::optional<std::pair<std::string, std::string>> FaceChecks::crossingCadFaces(
+    const Model& model, int regionA, int regionB, const Progress& progress) const {
+  if (!model.origin) return {};
+  const CadModel& cad = model.origin->shape->cad;
+  const WeldedMesh& mesh = model.origin->shape->mesh;
+  const auto facesOf = [&](int region) {
+    std::map<int, Bnd_Box> boxes;
+    for (const int t : model.origin->triangles.at(region)) boxes[mesh.triangles[t].face];
+    for (auto& [face, box] : boxes) BRepBndLib::Add(cad.faces[face].face, box);
+    return boxes;
+  };
+  const auto facesA = facesOf(regionA), facesB = facesOf(regionB);
+  const auto isOfBoth = [](const std::string& what) {
+    return what.starts_with("Face1, Face2") || what.starts_with("Face2, Face1");
+  };
+  for (const auto& [a, boxA] : facesA)
+    for (const auto& [b, boxB] : facesB) {
+      if (a == b || boxA.IsOut(boxB)) continue;
+      const auto answer =
+          checker_.faults(compound({Shape(cad.faces[a].face), Shape(cad.faces[b].face)}),
+                          {.elements = false, .selfCrossings = false}, kSecondsOfTwo, progress);
+      if (answer && std::any_of(answer->begin(), answer->end(), isOfBoth))
+        return std::pair(cad.faces[a].name, cad.faces[b].name);
+    }
+  return {};
 }
 
 std::vector<std::string> FaceChecks::faultsOfWhole(const SplineModel& model, const Progress& progress) const {

@@ -1,16 +1,25 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "trimquad/brep/checker.h"
+#include "trimquad/mesh/region.h"
 #include "trimquad/spline/spline_model.h"
 
 namespace trimquad {
 
 /// The fault of a face whose check does not end.
 inline constexpr const char* kCheckDoesNotEnd = "the check does not end";
+
+struct FaceFault {
+  std::string what;          ///< a line of trimquad::faults(), of the face alone or together with `other`
+  std::optional<int> other;  ///< index of the face that it crosses
+  bool operator==(const FaceFault&) const = default;
+};
 
 /// Checks a model that is trimmed again and again as OpenCASCADE does, face by face and pair by pair: such as
 /// have not changed since an earlier time are not checked again. Crossings, of a face with itself and of
@@ -29,8 +38,15 @@ class FaceChecks {
   /// within a limit, which usual ones stay far below, is a fault. What was done is added to the progress's
   /// work. On up to `threads` threads. Throws Error(Stage, "write") as assemble() does, Error(Input, "setup")
   /// where the program cannot be run, Error(Cancelled).
-  std::vector<std::vector<std::string>> faults(const SplineModel& model, const std::vector<int>& folded,
-                                               int threads, const Progress& progress);
+  std::vector<std::vector<FaceFault>> faults(const SplineModel& model, const std::vector<int>& folded,
+                                             int threads, const Progress& progress);
+
+  /// The names of two CAD faces, one of each region, that cross each other as they are: then surfaces that
+  /// follow them do. None where no two of them do, or the model is one of a mesh. Throws Error(Input,
+  /// "setup"), Error(Cancelled).
+  std::optional<std::pair<std::string, std::string>> crossingCadFaces(const Model& model, int regionA,
+                                                                      int regionB,
+                                                                      const Progress& progress) const;
 
   /// What is wrong with the model as a whole, itself or as its STEP file holds it, but for faces that cross
   /// others.

@@ -16,7 +16,7 @@ FaceChecks checksOf() {
   return FaceChecks(TRIMQUAD_CHECKER);
 }
 
-using Faults = std::vector<std::vector<std::string>>;
+using Faults = std::vector<std::vector<FaceFault>>;
 
 /// A box of which two faces are left, one with a spike, away from its edges, through the middle of the other.
 SplineModel spikedFaces() {
@@ -34,8 +34,11 @@ SplineModel spikedFaces() {
 
 TEST(FaceChecks, facesThatCrossAreFoundWhereverTheyAre) {
   auto model = spikedFaces();
-  const std::vector<std::string> none;
+  const std::vector<FaceFault> none;
   ASSERT_NE(model.faces[0].region, model.faces[1].region);
+  const Faults crossing = checksOf().faults(model, {}, 1, unwatched);
+  EXPECT_EQ(crossing[0].at(0).other, 1);
+  EXPECT_EQ(crossing[1].at(0).other, 0);
   for (const auto& folded : {std::vector<int>{}, {0}, {1}})
     for (const auto& faults : checksOf().faults(model, folded, 2, unwatched)) EXPECT_NE(faults, none);
   // Also such as are bent against each other, which are looked at before the others.
@@ -51,7 +54,9 @@ TEST(FaceChecks, aFaceThatCrossesItselfIsFound) {
   auto& s = model.faces[0].surface;
   for (int j = s.countV / 3; j <= 2 * s.countV / 3; ++j)
     for (int i = 0; i < 4; ++i) s.poles[s.countU / 2 - 1 + i + s.countU * j] += loop[i];
-  EXPECT_NE(checksOf().faults(model, {}, 1, unwatched), Faults(1));
+  const Faults crossing = checksOf().faults(model, {}, 1, unwatched);
+  ASSERT_FALSE(crossing[0].empty());
+  EXPECT_FALSE(crossing[0][0].other);
 }
 
 TEST(FaceChecks, bodiesMayCrossEachOther) {
