@@ -114,40 +114,44 @@ def _refit_faulty(result, checks, progress):
     for index, found in faulty.items():
         item, fault = result.regions[index], found[0][1]
         crossed = None if fault.other is None else result.regions[faces[fault.other]["region"]]
-        if crossed and (crossed.fitted is None or _leave_out_as_crossing(item, crossed, result, progress)):
+        if crossed and crossed.fitted is None:
+            continue  # left out just now
+        met = _meeting(item, crossed, result, progress)
+        if met and met.cross:
+            message = f"{met.first} crosses {met.second} in the input; trim them at each other, or convert them one by one"
+            fitted, item.fitted, item.error = item.fitted, None, Error("stage", "fit", message, item.name)
+            _leave_out(item, fitted, result)
             continue
         endless = all(fault.what == load().CHECK_DOES_NOT_END for _, fault in found)
-        message = f"{_said_of(fault, item, crossed)}; use a smaller tolerance"
+        message = _said_of(fault, item, crossed, met)
         at_fault.append((item, {chart for chart, _ in found}, Error("stage", "fit", message, item.name, endless=endless)))
     _refit_all(at_fault, result, progress)
     return bool(faulty)
 
 
-def _said_of(fault, item, crossed):
-    if not crossed:
-        return f"OpenCASCADE finds the fitted surface at fault ({fault.what})"
-    name = "another part of the region" if crossed is item else crossed.name
-    if fault.what == load().CHECK_DOES_NOT_END:
-        return f"OpenCASCADE's check of the fitted surface with that of {name} does not end"
-    return f"the fitted surface crosses that of {name}"
-
-
-def _leave_out_as_crossing(item, crossed, result, progress):
-    """Leaves a region out without another fit whose CAD faces cross those of another one. Whether they do."""
-    if crossed is item:
-        return False
-    if crossed not in item.crossings:
+def _meeting(item, crossed, result, progress):
+    """Two CAD faces, of a region and of one that its surfaces cross, that meet where they have no common edge, or None."""
+    if crossed in (None, item):
+        return None
+    if crossed not in item.meetings:
         indices = (result.regions.index(r) for r in (item, crossed))
         with progress.stage("check") as native_progress:
-            item.crossings[crossed] = load().FaceChecks(CHECKER).crossing_cad_faces(result.model, *indices, native_progress)
-    if not item.crossings[crossed]:
-        return False
-    first, second = item.crossings[crossed]
-    message = f"{first} crosses {second} in the input; trim them at each other, or convert them one by one"
-    fitted, item.fitted = item.fitted, None
-    item.error = Error("stage", "fit", message, item.name)
-    _leave_out(item, fitted, result)
-    return True
+            item.meetings[crossed] = load().FaceChecks(CHECKER).meeting_cad_faces(result.model, *indices, native_progress)
+    return item.meetings[crossed]
+
+
+def _said_of(fault, item, crossed, met):
+    if not crossed:
+        return f"OpenCASCADE finds the fitted surface at fault ({fault.what}); use a smaller tolerance"
+    name = "another part of the region" if crossed is item else crossed.name
+    if fault.what == load().CHECK_DOES_NOT_END:
+        return f"OpenCASCADE's check of the fitted surface with that of {name} does not end; use a smaller tolerance"
+    if met:
+        return (
+            f"the fitted surface crosses that of {name}: {met.first} touches {met.second} in the input where they have no "
+            "common edge; split or join them there, or convert them one by one"
+        )
+    return f"the fitted surface crosses that of {name}; use a smaller tolerance"
 
 
 def _refit_all(at_fault, result, progress):

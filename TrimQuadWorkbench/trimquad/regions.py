@@ -99,7 +99,7 @@ class RegionResult:
         self.may_be_divided = False  # along its sharp edges, as it failed
         self.cut_from = None
         self.fitted_closer = False
-        self.crossings = {}  # by region that its surfaces cross: the names of CAD faces of both that do, or None
+        self.meetings = {}  # by region that its surfaces cross: CAD faces of both that meet without a common edge, or None
         self.left_out = None  # surfaces that could not be trimmed
         self.left_out_between = []  # each time those around it then
         self.cuts_left = len(CUTS)

@@ -91,6 +91,10 @@ void bindBrep(py::module_& m) {
       .def(py::init<std::string, std::optional<int>>(), py::arg("what"), py::arg("other") = std::nullopt)
       .def_readonly("what", &FaceFault::what)
       .def_readonly("other", &FaceFault::other, "index of the face that it crosses, or None");
+  py::class_<MeetingFaces>(m, "MeetingFaces", "two CAD faces that meet where they have no common edge")
+      .def_readonly("first", &MeetingFaces::first, "its name")
+      .def_readonly("second", &MeetingFaces::second, "its name")
+      .def_readonly("cross", &MeetingFaces::cross, "whether they cross, rather than touch");
   py::class_<FaceChecks>(
       m, "FaceChecks",
       "OpenCASCADE's checks of a model's faces, and of pairs of them as its STEP file holds "
@@ -102,9 +106,11 @@ void bindBrep(py::module_& m) {
            "and with pairs "
            "of it and another one. Pairs with a face in `folded` (indices) and such as are bent against each "
            "other come first; the others where nothing is wrong so far.")
-      .def("crossing_cad_faces", &FaceChecks::crossingCadFaces, py::arg("model"), py::arg("region_a"),
+      .def("meeting_cad_faces", &FaceChecks::meetingCadFaces, py::arg("model"), py::arg("region_a"),
            py::arg("region_b"), py::arg("progress"), Released(),
-           "Names of two CAD faces, one of each region, that cross each other as they are, or None.")
+           "MeetingFaces: two CAD faces, one of each region, that cross each other as they are, or else "
+           "touch; or "
+           "None.")
       .def("faults_of_whole", &FaceChecks::faultsOfWhole, py::arg("spline"), py::arg("progress"), Released(),
            "what they find wrong with the whole, also in memory, but for faces that cross others");
   m.def("face_order", &faceOrder, py::arg("spline"), Released(),

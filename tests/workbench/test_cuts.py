@@ -250,6 +250,20 @@ def test_of_faces_that_cross_in_the_input_one_fails_and_both_are_named():
     assert all(r.refits == 0 for r in result.regions) and len(result.shape.Faces) == 1
 
 
+def test_faces_are_named_that_touch_in_the_input_where_they_have_no_common_edge():
+    import FreeCAD
+    import Part
+
+    # A bent strip, the first edge of which stands on its last face.
+    corners = [FreeCAD.Vector(*p) for p in ((5, 0, 0), (5, 0, 6), (10, 0, 6), (10, 0, 0), (0, 0, 0))]
+    sides = [Part.makeLine(*ends).extrude(FreeCAD.Vector(0, 12, 0)) for ends in zip(corners, corners[1:])]
+    result = trimquad.convert(Part.makeShell(sides), trimquad.Options(quads=100))
+    messages = [str(r.error) for r in result.failed]
+    assert messages
+    for message in messages:
+        assert "Face1 touches Face4 in the input" in message or "Face4 touches Face1 in the input" in message
+
+
 def test_fits_end_with_a_measure_of_work(monkeypatch):
     calls = []
 

@@ -243,8 +243,8 @@ std::vector<std::vector<FaceFault>> FaceChecks::faults(const SplineModel& model,
   return result;
 }
 
-std::optional<std::pair<std::string, std::string>> FaceChecks::crossingCadFaces(
-    const Model& model, int regionA, int regionB, const Progress& progress) const {
+std::optional<MeetingFaces> FaceChecks::meetingCadFaces(const Model& model, int regionA, int regionB,
+                                                        const Progress& progress) const {
   if (!model.origin) return {};
   const CadModel& cad = model.origin->shape->cad;
   const WeldedMesh& mesh = model.origin->shape->mesh;
@@ -258,16 +258,18 @@ std::optional<std::pair<std::string, std::string>> FaceChecks::crossingCadFaces(
   const auto isOfBoth = [](const std::string& what) {
     return what.starts_with("Face1, Face2") || what.starts_with("Face2, Face1");
   };
+  std::optional<MeetingFaces> touching;
   for (const auto& [a, boxA] : facesA)
     for (const auto& [b, boxB] : facesB) {
       if (a == b || boxA.IsOut(boxB)) continue;
-      const auto answer =
-          checker_.faults(compound({Shape(cad.faces[a].face), Shape(cad.faces[b].face)}),
-                          {.elements = false, .selfCrossings = false}, kSecondsOfTwo, progress);
-      if (answer && std::any_of(answer->begin(), answer->end(), isOfBoth))
-        return std::pair(cad.faces[a].name, cad.faces[b].name);
+      const auto met = checker_.faults(compound({Shape(cad.faces[a].face), Shape(cad.faces[b].face)}),
+                                       {.elements = false, .selfCrossings = false}, kSecondsOfTwo, progress);
+      if (!met || met->empty()) continue;
+      const bool cross = std::any_of(met->begin(), met->end(), isOfBoth);
+      if (cross || !touching) touching = {cad.faces[a].name, cad.faces[b].name, cross};
+      if (cross) return touching;
     }
-  return {};
+  return touching;
 }
 
 std::vector<std::string> FaceChecks::faultsOfWhole(const SplineModel& model, const Progress& progress) const {

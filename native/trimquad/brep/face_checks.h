@@ -3,7 +3,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "trimquad/brep/checker.h"
@@ -19,6 +18,12 @@ struct FaceFault {
   std::string what;          ///< a line of trimquad::faults(), of the face alone or together with `other`
   std::optional<int> other;  ///< index of the face that it crosses
   bool operator==(const FaceFault&) const = default;
+};
+
+/// Two CAD faces that meet where they have no common edge.
+struct MeetingFaces {
+  std::string first, second;  ///< names
+  bool cross;                 ///< rather than touch, with an edge or a corner of one on the other
 };
 
 /// Checks a model that is trimmed again and again as OpenCASCADE does, face by face and pair by pair: such as
@@ -41,12 +46,11 @@ class FaceChecks {
   std::vector<std::vector<FaceFault>> faults(const SplineModel& model, const std::vector<int>& folded,
                                              int threads, const Progress& progress);
 
-  /// The names of two CAD faces, one of each region, that cross each other as they are: then surfaces that
-  /// follow them do. None where no two of them do, or the model is one of a mesh. Throws Error(Input,
-  /// "setup"), Error(Cancelled).
-  std::optional<std::pair<std::string, std::string>> crossingCadFaces(const Model& model, int regionA,
-                                                                      int regionB,
-                                                                      const Progress& progress) const;
+  /// Two CAD faces, one of each region, that cross each other as they are, or else touch: then surfaces that
+  /// follow them do, or cross. None where no two of them do, or the model is one of a mesh. Throws
+  /// Error(Input, "setup"), Error(Cancelled).
+  std::optional<MeetingFaces> meetingCadFaces(const Model& model, int regionA, int regionB,
+                                              const Progress& progress) const;
 
   /// What is wrong with the model as a whole, itself or as its STEP file holds it, but for faces that cross
   /// others.
