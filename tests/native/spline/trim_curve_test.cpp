@@ -55,6 +55,27 @@ TEST(TrimCurve, IsLedToACornerThatLiesOffItsEndInBothDirections) {
   }
 }
 
+TEST(TrimCurve, IsNoIntersectionOfSheetsWhoseWedgeClosesTowardsAnEnd) {
+  const double length = 9;
+  for (const double leastSlope : {0.0, 0.1}) {
+    const auto side = [&](double sign) {
+      return CurveOnSheet(interpolated(
+                              [=](double u, double v) {
+                                const double slope = leastSlope + 0.2 * std::tanh(u / 0.03);
+                                return Eigen::Vector3d(u, v, sign * v * slope);
+                              },
+                              0, length, 600, -1, 1, 4),
+                          {{0, 0, 0}, {length / 2, 0, 0}, {length, 0, 0}});
+    };
+    CurveOnSheet a = side(1), b = side(-1);
+    for (auto* c : {&a, &b})
+      for (const auto& p : c->run.points) c->run.uv.push_back(p.head<2>());
+    const std::vector<SheetSide> sides{a.side(), b.side()};
+    const auto sampled = sampleCurve(a.curve, sides, 0.1);
+    EXPECT_EQ(bool(intersectionCurve(sampled, sides, 1e-3, 0.1, kSmallestCrossing, {}, {})), leastSlope > 0);
+  }
+}
+
 TEST(TrimCurve, ShowsItsGapAtItsStart) {
   const double scale = 28, length = 9;
   CurveOnSheet c(interpolated([&](double u, double v) { return Eigen::Vector3d(scale * u, scale * v, 0); },
