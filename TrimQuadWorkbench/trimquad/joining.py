@@ -203,8 +203,8 @@ def _at_once(function, arguments, result, progress):
 
 
 def _refit(item, charts, error, result, progress):
-    """Fits a region again in the next of the ways there are, then over another map. Where there is none left, its error is
-    kept instead.
+    """Fits a region again in the next of the ways there are, then over another map. Where there is none left, or no surfaces
+    are found, its error is kept instead.
 
     charts: those whose faces are at fault; empty where the region's edges are, many of which small holes have
     """
@@ -250,7 +250,7 @@ def _refit(item, charts, error, result, progress):
         if regions.fit_over_another_map(item, result, progress):
             return
         item.fitted = None
-        item.error = failure
+        item.error = error  # why it had to be fitted again; what fails now may be asked for by nobody but this
 
 
 def _applies(way, item, charts):
