@@ -116,7 +116,7 @@ def _refit_faulty(result, checks, progress):
         crossed = None if fault.other is None else result.regions[faces[fault.other]["region"]]
         if crossed and crossed.fitted is None:
             continue  # left out just now
-        met = _meeting(item, crossed, result, progress)
+        met = _meeting(item, crossed, checks, result, progress)
         if met and met.cross:
             message = f"{met.first} crosses {met.second} in the input; trim them at each other, or convert them one by one"
             fitted, item.fitted, item.error = item.fitted, None, Error("stage", "fit", message, item.name)
@@ -129,14 +129,14 @@ def _refit_faulty(result, checks, progress):
     return bool(faulty)
 
 
-def _meeting(item, crossed, result, progress):
+def _meeting(item, crossed, checks, result, progress):
     """Two CAD faces, of a region and of one that its surfaces cross, that meet where they have no common edge, or None."""
     if crossed in (None, item):
         return None
     if crossed not in item.meetings:
         indices = (result.regions.index(r) for r in (item, crossed))
         with progress.stage("check") as native_progress:
-            item.meetings[crossed] = load().FaceChecks(CHECKER).meeting_cad_faces(result.model, *indices, native_progress)
+            item.meetings[crossed] = checks.meeting_cad_faces(result.model, *indices, native_progress)
     return item.meetings[crossed]
 
 
@@ -250,7 +250,7 @@ def _refit(item, charts, error, result, progress):
         if regions.fit_over_another_map(item, result, progress):
             return
         item.fitted = None
-        item.error = error  # why it had to be fitted again; what fails now may be asked for by nobody but this
+        item.error = error  # why it had to be fitted again
 
 
 def _applies(way, item, charts):

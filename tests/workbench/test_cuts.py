@@ -214,7 +214,8 @@ def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch
         def faults(self, model, *_):
             sets.append(tuple(k for k in (0, 2, 4) if k in {face["region"] for face in model.faces}))
             assert len(sets) < 30, sets
-            return [[native.FaceFault("crosses another")] if at_fault.get(sets[-1]) == face["region"] else [] for face in model.faces]
+            found = [native.FaceFault("crosses another")]
+            return [found if at_fault.get(sets[-1]) == face["region"] else [] for face in model.faces]
 
         def faults_of_whole(self, *_):
             return []
