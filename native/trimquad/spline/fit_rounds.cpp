@@ -65,6 +65,10 @@ constexpr double kFewTurned = 0.05;
 constexpr int kFoldPatience = 8;
 /// Rounds that are spent on getting rid of bulges between samples.
 constexpr int kBulgePatience = 10;
+/// Part of a bulge's height from which on one is looked for around; steps of that, by the knot intervals, and
+/// how often they are halved.
+constexpr double kNearBulge = 0.75, kClimb = 0.1;
+constexpr int kClimbHalvings = 3;
 /// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
 /// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
 /// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
@@ -433,8 +437,37 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
+/// The bulge at a place, or on the way up from there where it is near one: distances from triangles rise to
+/// sharp ridges, narrower than the way between places that are looked at.
 std::optional<Bulge> FitRounds::bulgeAt(const FitPlace& x) const {
-  return fitted_.bulgeAt(result_.surfaces[x.chart].jet(x.parameter[0], x.parameter[1]));
+  const auto& surface = result_.surfaces[x.chart];
+  const auto farther = [&](const Eigen::Vector2d& at, double than) {
+    return fitted_.farther(surface.jet(surface.wrappedU(at[0]), at[1]), than);
+  };
+  const double limit = fitted_.limit();
+  auto highest = farther(x.parameter, kNearBulge * limit);
+  if (!highest) return {};
+  Eigen::Vector2d at = x.parameter, step = kClimb * knotIntervals(x);
+  for (int halvings = 0; highest->distance <= limit && halvings <= kClimbHalvings;) {
+    bool rises = false;
+    for (const int axis : {0, 1})
+      for (const double way : {1, -1}) {
+        Eigen::Vector2d there = at;
+        there[axis] += way * step[axis];
+        if (!isInChart({x.chart, there})) continue;
+        const auto found = farther(there, highest->distance);
+        if (!found) continue;
+        highest = found;
+        at = there;
+        rises = true;
+        break;
+      }
+    if (rises) continue;
+    step /= 2;
+    ++halvings;
+  }
+  if (highest->distance <= limit) return {};
+  return highest;
 }
 
 /// What the surfaces are between the feet, where they come close.

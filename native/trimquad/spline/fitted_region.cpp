@@ -26,10 +26,11 @@ bool FittedRegion::facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d
   return hit && hit->squaredDistance <= enough_ * enough_;
 }
 
-std::optional<Bulge> FittedRegion::bulgeAt(const SplineSurface::Jet& jet) const {
-  const double limit = std::max(tolerance_, kAway * enough_);
+double FittedRegion::limit() const { return std::max(tolerance_, kAway * enough_); }
+
+std::optional<Bulge> FittedRegion::farther(const SplineSurface::Jet& jet, double than) const {
   const auto hit = triangles_.closest(jet.s);
-  if (hit.squaredDistance <= limit * limit) return {};
+  if (hit.squaredDistance <= than * than) return {};
   const Eigen::Vector3d there = closest(jet.s), away = there - jet.s;
   double distance = away.norm();
   if (isOnBoundary(hit)) {
@@ -37,7 +38,7 @@ std::optional<Bulge> FittedRegion::bulgeAt(const SplineSurface::Jet& jet) const 
     distance = std::abs(away.dot(normal(jet)));
     if (hit.squaredDistance > 2 * distance * distance) return {};
   }
-  if (!(distance > limit)) return {};
+  if (!(distance > than)) return {};
   return Bulge{distance, there};
 }
 

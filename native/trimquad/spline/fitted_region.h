@@ -26,10 +26,14 @@ class FittedRegion {
   /// Whether the region faces that way within what is enough of a point: small curls of it may be flattened.
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
   /// Where a surface is farther away than is enough, with some reserve for the places beside it where the
-  /// tolerance leaves any; none elsewhere. Beyond the boundary it counts where it is less far beyond than
-  /// above or below: the rest is trimmed off. Of a true surface the triangles are a coarse picture, so that
-  /// it is asked where these are far.
-  std::optional<Bulge> bulgeAt(const SplineSurface::Jet& jet) const;
+  /// tolerance leaves any; none elsewhere.
+  std::optional<Bulge> bulgeAt(const SplineSurface::Jet& jet) const { return farther(jet, limit()); }
+  /// From where on there are bulges.
+  double limit() const;
+  /// Where a surface is farther away than that; none elsewhere. Beyond the boundary it counts where it is less
+  /// far beyond than above or below: the rest is trimmed off. Of a true surface the triangles are a coarse
+  /// picture, so that it is asked where these are far.
+  std::optional<Bulge> farther(const SplineSurface::Jet& jet, double than) const;
 
  private:
   bool isOnBoundary(const TriangleTree::Hit& hit) const;
