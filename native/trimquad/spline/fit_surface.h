@@ -39,10 +39,10 @@ struct FittedSurface {
   Chart chart;
   SplineSurface surface;
   std::optional<Layout> layout;  ///< where there are several charts; then `chart` and `surface` are empty
-  std::vector<SplineSurface> surfaces;        ///< by chart of the layout
+  std::vector<SplineSurface> surfaces;  ///< by chart of the layout
   /// Over independent samples of the region, model units; the largest over bulges between them as well.
   double maxDeviation = 0, rmsDeviation = 0;
-  std::vector<ChartDeviation> deviations;     ///< by chart, one where there is a single surface
+  std::vector<ChartDeviation> deviations;  ///< by chart, one where there is a single surface
   /// Samples, those of the fit and independent ones, where a surface is turned over in a small fold, though
   /// it lies within the tolerance there; and how many samples there are.
   struct Fold {

@@ -26,7 +26,9 @@ bool FittedRegion::facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d
   return hit && hit->squaredDistance <= enough_ * enough_;
 }
 
-double FittedRegion::limit() const { return std::max(tolerance_, kAway * enough_); }
+double FittedRegion::limit() const {
+  return std::max(tolerance_, kAway * enough_);
+}
 
 std::optional<Bulge> FittedRegion::farther(const SplineSurface::Jet& jet, double than) const {
   const auto hit = triangles_.closest(jet.s);

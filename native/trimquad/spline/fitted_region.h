@@ -30,9 +30,9 @@ class FittedRegion {
   std::optional<Bulge> bulgeAt(const SplineSurface::Jet& jet) const { return farther(jet, limit()); }
   /// From where on there are bulges.
   double limit() const;
-  /// Where a surface is farther away than that; none elsewhere. Beyond the boundary it counts where it is less
-  /// far beyond than above or below: the rest is trimmed off. Of a true surface the triangles are a coarse
-  /// picture, so that it is asked where these are far.
+  /// Where a surface is farther away than that; none elsewhere. Beyond the boundary it counts where it is
+  /// less far beyond than above or below: the rest is trimmed off. Of a true surface the triangles are a
+  /// coarse picture, so that it is asked where these are far.
   std::optional<Bulge> farther(const SplineSurface::Jet& jet, double than) const;
 
  private:

@@ -8,6 +8,7 @@
 #include "support/analytic_region.h"
 #include "support/rounds.h"
 #include "trimquad/base/error.h"
+#include "trimquad/spline/fitted_region.h"
 
 namespace trimquad {
 namespace {
@@ -171,6 +172,33 @@ TEST(FitSurface, creasesObliqueToTheGridAreReachedByKnots) {
   roof.point = [](double u, double v) { return Eigen::Vector3d(u, v, std::abs(u + 0.3 * v - 12)); };
   const auto fitted = fit(roof, sample::kSanitized ? 0.2 : 0.08);
   EXPECT_LE(fitted.surface.poles.size(), 3000u);
+}
+
+/// The largest distance of the fitted surface from a region that is no more than its triangles.
+double farthest(const FittedSurface& fitted, const AnalyticRegion& a, int perSide) {
+  const FittedRegion region(a.region, 0, 0);
+  double result = 0;
+  for (int i = 0; i < perSide; ++i)
+    for (int j = 0; j < perSide; ++j) {
+      const double u = a.firstU + (a.lastU - a.firstU) * (i + 0.5) / perSide,
+                   v = a.firstV + (a.lastV - a.firstV) * (j + 0.5) / perSide;
+      if (const auto there = region.farther(fitted.surface.jet(u, v), result)) result = there->distance;
+    }
+  return result;
+}
+
+TEST(FitSurface, ridgesBetweenSamplesKeepTheTolerance) {
+  for (const double slope : {0.25, 0.31, 0.37}) {
+    AnalyticRegion roof;
+    roof.columns = roof.rows = 30;
+    roof.lastU = roof.lastV = 10;
+    roof.point = [=](double u, double v) {
+      return Eigen::Vector3d(u, v, std::abs(u + slope * v - 6) + 0.5 * std::abs(u - slope * v - 3));
+    };
+    const double tolerance = 0.08;
+    const auto fitted = fit(roof, tolerance);
+    EXPECT_LE(farthest(fitted, roof, sample::fineness(600)), 1.005 * tolerance);
+  }
 }
 
 TEST(FitSurface, unreachableTolerancesSayHowFarTheyCame) {
