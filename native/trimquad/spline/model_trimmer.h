@@ -36,8 +36,9 @@ struct CornerUse {
   std::optional<int> layoutPoint;  ///< of its region, where that is known
   Eigen::Vector3d point;
   Eigen::Vector2d guess;
-  Eigen::Vector2d at;  ///< on the sheet
-  int group = -1;      ///< which vertex of the result
+  double distance = 0;      ///< of the sheet from the point, by that guess
+  Eigen::Vector2d at = {};  ///< on the sheet
+  int group = -1;           ///< which vertex of the result
   friend auto key(const CornerUse& use) { return std::tuple(use.corner, use.sheet, use.vertex); }
 };
 
@@ -132,7 +133,7 @@ class ModelTrimmer {
   }
 
   int cornerUse(const BoundaryRun& run, const RunEnd& end) const {
-    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}, {}};
+    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}};
     const auto found =
         std::lower_bound(uses_.begin(), uses_.end(), wanted,
                          [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
