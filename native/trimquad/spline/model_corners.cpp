@@ -8,39 +8,17 @@
 #include "trimquad/spline/model_trimmer.h"
 
 namespace trimquad {
-namespace {
-
-/// A sheet that turns back just beyond its trim passes a corner twice, and the map's parameters may be those
-/// of the way back: the place where the sheet's boundary run comes to the corner, in so many steps, is taken
-/// where it is nearer than this part.
-constexpr int kStepsToCorner = 32;
-constexpr double kNearer = 0.5;
-
-}  // namespace
 
 void ModelTrimmer::placeCorners() {
-  const auto addUse = [&](const BoundaryRun& run, const RunEnd& end, std::size_t at, std::size_t beside) {
-    const Sheet& sheet = sheets_[sheetOf(run)];
-    const Eigen::Vector3d &p = run.points[at], &q = run.points[beside];
-    const auto away = [&](const Eigen::Vector2d& x) { return (sheet.jet(x).s - p).norm(); };
-    Eigen::Vector2d guess = run.uv[at], along = run.uv[beside];
-    for (int step = 0; step <= kStepsToCorner; ++step)
-      along = sheet.footPoint(q + double(step) / kStepsToCorner * (p - q), along);
-    double distance = away(sheet.footPoint(p, guess));
-    if (away(along) < kNearer * distance) {
-      guess = along;
-      distance = away(along);
-    }
-    uses_.push_back({cornerOf(end), sheetOf(run), end.vertex, end.point, p, guess, distance});
+  const auto addUse = [&](const BoundaryRun& run, const RunEnd& end, std::size_t at) {
+    uses_.push_back({cornerOf(end), sheetOf(run), end.vertex, end.point, run.points[at], run.uv[at], {}});
   };
   for (const auto& run : runs_) {
-    const std::size_t last = run.points.size() - 1;
-    addUse(run, run.start, 0, 1);
-    addUse(run, run.end, last, last - 1);
+    addUse(run, run.start, 0);
+    addUse(run, run.end, run.points.size() - 1);
   }
-  std::stable_sort(uses_.begin(), uses_.end(), [](const CornerUse& x, const CornerUse& y) {
-    return std::pair(key(x), x.distance) < std::pair(key(y), y.distance);
-  });
+  std::sort(uses_.begin(), uses_.end(),
+            [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });
   uses_.erase(std::unique(uses_.begin(), uses_.end(),
                           [](const CornerUse& x, const CornerUse& y) { return key(x) == key(y); }),
               uses_.end());

@@ -7,6 +7,9 @@
 namespace trimquad {
 namespace {
 
+/// Part of a distance from a corner below which another one is far less.
+constexpr double kFarNearer = 0.5;
+
 /// Parts of the tolerance within which edges follow their curves, as seen on the sheet; and chains of mesh
 /// edges in space, so that their teeth are smoothed.
 constexpr double kCloseness = 0.25, kChainCloseness = 0.9;
@@ -56,6 +59,51 @@ void ModelTrimmer::sample(int id, CurveWithSides& curve) const {
     sampled(curve.sides);
   else
     for (const auto& side : curve.sides) sampled({side});
+}
+
+/// A sheet that turns back just beyond its trim passes a corner twice, and the map may have one of the two
+/// boundary runs that end there on the way back: that one is led to where the other comes to the corner, if
+/// the sheet is far nearer there.
+void ModelTrimmer::settleRunEnds() {
+  struct End {
+    BoundaryRun* run;
+    bool atStart;
+    int curve;
+    Eigen::Vector2d foot;
+    double distance;
+  };
+  std::map<std::tuple<int, int, int>, std::vector<End>> ends;  // by corner, sheet, vertex
+  const auto collect = [&](BoundaryRun& run, int id, const SampledCurve& sampled, std::size_t side) {
+    const Sheet& sheet = sheets_[sheetOf(run)];
+    const auto& feet = sampled.foot[side];
+    for (const bool atStart : {true, false}) {
+      const RunEnd& end = atStart ? run.start : run.end;
+      const Eigen::Vector2d& foot = atStart ? feet.front() : feet.back();
+      const Eigen::Vector3d& point = atStart ? sampled.point.front() : sampled.point.back();
+      ends[{cornerOf(end), sheetOf(run), end.vertex}].push_back(
+          {&run, atStart, id, foot, (sheet.jet(foot).s - point).norm()});
+    }
+  };
+  for (const auto& [id, curve] : curves_) {
+    const bool shared = curve.sides.size() == 2;
+    for (std::size_t k = 0; k < curve.sides.size(); ++k)
+      collect(runs_[curve.sides[k].run - runs_.data()], id, curve.sampled[shared ? 0 : k], shared ? k : 0);
+  }
+  std::set<int> led;
+  for (const auto& [corner, found] : ends) {
+    const End& nearest = *std::min_element(
+        found.begin(), found.end(), [](const End& a, const End& b) { return a.distance < b.distance; });
+    for (const End& end : found) {
+      if (end.distance <= kComposedError || !(nearest.distance < kFarNearer * end.distance)) continue;
+      Eigen::Vector2d& uv = end.atStart ? end.run->uv.front() : end.run->uv.back();
+      Eigen::Vector2d foot = nearest.foot;
+      if (const auto& period = sheets_[sheetOf(*end.run)].period)
+        foot[0] += *period * std::round((uv[0] - foot[0]) / *period);
+      uv = foot;
+      led.insert(end.curve);
+    }
+  }
+  for (const int id : led) sample(id, curves_.at(id));
 }
 
 void ModelTrimmer::intersect(CurveWithSides& curve) const {

@@ -141,7 +141,7 @@ std::map<int, std::vector<SplineModel::MovedSurface>> ModelTrimmer::movedRegions
 std::optional<Eigen::Vector2d> ModelTrimmer::borderEnd(const BoundaryRun& run, const RunEnd& end) const {
   const auto& lines = borders_[run.region];
   if (!lines) return {};
-  const int point = layoutPoint({cornerOf(end), sheetOf(run), end.vertex, end.point, {}, {}});
+  const int point = layoutPoint({cornerOf(end), sheetOf(run), end.vertex, end.point, {}, {}, {}});
   if (point < 0) return {};
   for (const auto& e : lines->endsAt(point))
     for (const int side : {0, 1})

@@ -36,9 +36,8 @@ struct CornerUse {
   std::optional<int> layoutPoint;  ///< of its region, where that is known
   Eigen::Vector3d point;
   Eigen::Vector2d guess;
-  double distance = 0;      ///< of the sheet from the point, by that guess
-  Eigen::Vector2d at = {};  ///< on the sheet
-  int group = -1;           ///< which vertex of the result
+  Eigen::Vector2d at;  ///< on the sheet
+  int group = -1;      ///< which vertex of the result
   friend auto key(const CornerUse& use) { return std::tuple(use.corner, use.sheet, use.vertex); }
 };
 
@@ -72,6 +71,7 @@ class ModelTrimmer {
     meetInCorners();
     numberSheets();
     forEachCurve([&](int id, CurveWithSides& curve) { sample(id, curve); });
+    settleRunEnds();
     placeSeams();
     numberSheets();
     forEachCurve([&](int, CurveWithSides& curve) { intersect(curve); });
@@ -101,6 +101,7 @@ class ModelTrimmer {
     errors.raise();
   }
   void sample(int id, CurveWithSides& curve) const;
+  void settleRunEnds();
   void intersect(CurveWithSides& curve) const;
   ByteKey keyOf(const SampledCurve& sampled, const std::vector<SheetSide>& sides) const;
   long numberOfRegion(int r) const;
@@ -133,7 +134,7 @@ class ModelTrimmer {
   }
 
   int cornerUse(const BoundaryRun& run, const RunEnd& end) const {
-    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}};
+    const CornerUse wanted{cornerOf(end), sheetOf(run), end.vertex, {}, {}, {}, {}};
     const auto found =
         std::lower_bound(uses_.begin(), uses_.end(), wanted,
                          [](const CornerUse& x, const CornerUse& y) { return key(x) < key(y); });

@@ -129,6 +129,27 @@ TEST(TrimModel, boxOfPlanesIsClosed) {
   EXPECT_EQ(model.shells[0].solid, 0);
 }
 
+TEST(TrimModel, cornersOfASheetThatTurnsBackAreWhereItsBoundaryComesToThem) {
+  TrimCase c = bulgedBox(0);
+  c.tolerance = 0.05;
+  // The top goes on a little beyond one of the walls and comes back above itself; the map has the boundary on
+  // the way back.
+  constexpr double turns = 4.8, reach = 0.3, back = 5.5236;
+  FittedSurface& top = *c.fits[5];
+  top.surface = interpolated(
+      [=](double u, double v) {
+        const double x = u < turns ? u : turns + reach * std::sin((u - turns) / reach);
+        return Eigen::Vector3d(x, v, u < turns ? 3 : 3 + 0.05 * std::pow(u - turns, 2));
+      },
+      -7, 5.7, 240, -6, 6, 20);
+  for (FixedVector& x : top.chart.corner)
+    if (top.chart.scale.toQuads(x.u) > 4.99) x.u = top.chart.scale.round(back);
+  const auto model = c.trim();
+  expectExact(model);
+  for (const auto& vertex : model.vertices)
+    EXPECT_LE((vertex.point.cwiseAbs() - Eigen::Vector3d(5, 4, 3)).norm(), 0.01);
+}
+
 TEST(TrimModel, curvedSheetsMeetInTheirIntersections) {
   const auto model = bulgedBox(0.8).trim();
   expectExact(model);
