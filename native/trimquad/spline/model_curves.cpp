@@ -61,16 +61,16 @@ void ModelTrimmer::sample(int id, CurveWithSides& curve) const {
     for (const auto& side : curve.sides) sampled({side});
 }
 
-/// A sheet that turns back just beyond its trim passes a corner twice, and the map may have one of the two
-/// boundary runs that end there on the way back: that one is led to where the other comes to the corner, if
-/// the sheet is far nearer there.
+/// A sheet that turns back just beyond its trim passes a corner twice, and the map may have it on the way
+/// back, and one of the two boundary runs that end there as well: both are led to where the samples come to the
+/// corner, if the sheet is far nearer there.
 void ModelTrimmer::settleRunEnds() {
   struct End {
     BoundaryRun* run;
     bool atStart;
     int curve;
     Eigen::Vector2d foot;
-    double distance;
+    double distance, byMap;  ///< of the foot; of the one that is reached from the map's parameters
   };
   std::map<std::tuple<int, int, int>, std::vector<End>> ends;  // by corner, sheet, vertex
   const auto collect = [&](BoundaryRun& run, int id, const SampledCurve& sampled, std::size_t side) {
@@ -80,8 +80,10 @@ void ModelTrimmer::settleRunEnds() {
       const RunEnd& end = atStart ? run.start : run.end;
       const Eigen::Vector2d& foot = atStart ? feet.front() : feet.back();
       const Eigen::Vector3d& point = atStart ? sampled.point.front() : sampled.point.back();
+      const auto away = [&](const Eigen::Vector2d& x) { return (sheet.jet(x).s - point).norm(); };
       ends[{cornerOf(end), sheetOf(run), end.vertex}].push_back(
-          {&run, atStart, id, foot, (sheet.jet(foot).s - point).norm()});
+          {&run, atStart, id, foot, away(foot),
+           away(sheet.footPoint(point, atStart ? run.uv.front() : run.uv.back()))});
     }
   };
   for (const auto& [id, curve] : curves_) {
@@ -94,7 +96,7 @@ void ModelTrimmer::settleRunEnds() {
     const End& nearest = *std::min_element(
         found.begin(), found.end(), [](const End& a, const End& b) { return a.distance < b.distance; });
     for (const End& end : found) {
-      if (end.distance <= kComposedError || !(nearest.distance < kFarNearer * end.distance)) continue;
+      if (end.byMap <= kComposedError || !(nearest.distance < kFarNearer * end.byMap)) continue;
       Eigen::Vector2d& uv = end.atStart ? end.run->uv.front() : end.run->uv.back();
       Eigen::Vector2d foot = nearest.foot;
       if (const auto& period = sheets_[sheetOf(*end.run)].period)
