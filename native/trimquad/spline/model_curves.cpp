@@ -62,8 +62,8 @@ void ModelTrimmer::sample(int id, CurveWithSides& curve) const {
 }
 
 /// A sheet that turns back just beyond its trim passes a corner twice, and the map may have it on the way
-/// back, and one of the two boundary runs that end there as well: both are led to where the samples come to the
-/// corner, if the sheet is far nearer there.
+/// back, and one of the two boundary runs that end there as well: both are led to where the samples come to
+/// the corner, if the sheet is far nearer there.
 void ModelTrimmer::settleRunEnds() {
   struct End {
     BoundaryRun* run;
