@@ -21,6 +21,9 @@ MORE_POLES, FEW_POLES = 5, 1000
 MOST_WORK, MOST_WORK_BEFORE_CUT, MOST_WORK_OF_MODEL = 45e6, 10e6, 150e6
 # Of one fit to such a region of several CAD faces.
 MOST_WORK_OF_FIT = 30_000_000
+# And to a mesh that may be divided along its sharp edges instead, in any case and for each of its triangles: about twice what
+# fits take that follow these as creases.
+MOST_WORK_BEFORE_DIVISION, MOST_WORK_BY_TRIANGLE = 8_000_000, 1000
 # After so much, surfaces that have folds, which may do no harm, are not given up for those over another map; several only
 # for a single one.
 MOST_WORK_BEFORE_CHOICE = 8e6
@@ -203,7 +206,7 @@ def _map_region(item, index, result, progress):
     first Error that these do not cure ends it and is kept in the region."""
     item.edge_length, item.fill_holes = result.options.edge_length, result.options.fill_holes
     item.most_poles = _most_poles(index, result)
-    item.most_work = None if item.most_poles is None else MOST_WORK_OF_FIT
+    item.most_work = _most_work(item, result)
     for halving in range(HALVINGS + 1):
         try:
             _try_region(item, index, result, progress)
@@ -222,9 +225,7 @@ def _map_region(item, index, result, progress):
                 item.region = item.mapped_region
                 item.grid = item.quads = item.fitted = None
                 continue
-            item.may_be_divided = (
-                result.may_be_divided and error.stage == "fit" and item.region.features["aligned_edges"] > 0
-            )
+            item.may_be_divided = error.stage == "fit" and _may_be_divided(item, result)
             if item.may_be_divided or not _fits_over_another_map(item, error, result, progress):
                 item.error = error
         except MemoryError as error:
@@ -241,9 +242,26 @@ def _most_poles(index, result):
     return int(finer * max(FEWEST_LIMIT, MOST_POLES_OF_CAD * poles))
 
 
+def _may_be_divided(item, result):
+    return result.may_be_divided and item.region.features["aligned_edges"] > 0
+
+
+def _most_work(item, result):
+    """The limit for one fit to a region that can be cut or divided instead, or None."""
+    if item.most_poles is not None:
+        return MOST_WORK_OF_FIT
+    if not _may_be_divided(item, result):
+        return None
+    return MOST_WORK_BEFORE_DIVISION + MOST_WORK_BY_TRIANGLE * item.region.triangles
+
+
 def fit_undivided(result, progress):
-    """What _map_region() puts off while a mesh may be divided: surfaces over other maps of its regions."""
+    """What _map_region() puts off while a mesh may be divided: the rest of a fit that was given up for that, and surfaces
+    over other maps of its regions."""
     for item in result.undivided:
+        if item.most_work is not None and item.work > item.most_work:
+            item.other_maps = [way for way in item.other_maps if way != OWN_MAP]
+        item.most_work = None
         if _fits_over_another_map(item, item.error, result, progress):
             item.error = None
 
