@@ -124,17 +124,3 @@ def test_where_one_surface_is_at_fault_several_over_the_map_of_the_quads_are_tri
     assert region.error is None and not region.fitted_without_singularities
     assert len(result.shape.Faces) > 1
     result.shape.check(True)
-
-
-def test_one_surface_around_a_boss_meets_the_walls_in_the_corners_of_its_plate():
-    """What lies beyond three of the plate's sides goes its own way: there is a rounding along the fourth."""
-    import FreeCAD
-    import Part
-
-    part = Part.makeBox(60, 60, 10, FreeCAD.Vector(-30, -30, 0))
-    part = part.fuse(Part.makeCone(14, 10, 25, FreeCAD.Vector(0, 0, 8))).removeSplitter()
-    boxes = [(edge, edge.BoundBox) for edge in part.Edges]
-    rounded = [edge for edge, box in boxes if box.ZMin > 9.99 and box.ZMax < 10.01 and box.XMax < 20]
-    result = trimquad.convert(part.makeFillet(4, rounded).Faces, trimquad.Options())
-    assert result.failed == [] and len(result.spline.faces) == 6
-    assert result.spline.loose_edges == 0 and result.faults == []
