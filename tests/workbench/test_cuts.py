@@ -78,7 +78,7 @@ def test_first_around_the_place_then_between_all_faces(large_regions_fail, tmp_p
 def test_parts_that_touch_agree_on_their_common_edges(large_regions_fail):
     result = converted()
     assert result.spline.loose_edges == 0 and len(result.spline.moved_regions) >= 4  # of 8 in a ring
-    largest_gap = 4e-7 * result.model.diagonal  # twice what the sheets are led to each other within
+    largest_gap = 2e-7 * result.model.diagonal
     assert max(edge.Tolerance for edge in result.shape.Edges) <= largest_gap
     for item in result.regions:
         assert item.fitted.max_deviation == item.fitted.deviations[0][0] <= result.options.tolerance

@@ -203,8 +203,6 @@ std::vector<SurfaceSample> LayoutSamples::make(const JoinedSpace& space, bool co
         s.weight = weight;
       }
     }
-    for (const auto v : mesh.vertices())
-      if (region_.corner[v.idx()]) samples[v.idx()].weight += kCornerArea;
   }
   const int first = int(samples.size());
   std::vector<int> onTriangles;

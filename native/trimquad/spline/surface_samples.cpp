@@ -57,7 +57,6 @@ SurfaceSamples::SurfaceSamples(const Region& region, const GridMap& map, const C
     auto& s = vertices_[v.idx()];
     s.point = mesh_.point(v);
     s.normal = s.meshNormal = normals[v.idx()].normalized();
-    if (region.corner[v.idx()]) s.weight += kCornerArea;
     if (!region.surface) continue;
     const auto foot = region.surface->closestFacing(s.point, s.normal);
     s.normal = foot.normal;

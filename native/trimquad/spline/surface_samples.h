@@ -21,9 +21,6 @@ inline constexpr std::size_t kSmallTriangles = 20;
 inline constexpr double kVertexShare = 0.5;
 /// Width of the strip along the boundary whose weight the boundary's samples carry in addition, quads.
 inline constexpr double kBoundaryStrip = 0.25;
-/// Area whose weight a corner carries in addition, quads^2: there a surface is to meet two others, and it
-/// must not turn back just before, as it may within the tolerance where it goes on beyond in another way.
-inline constexpr double kCornerArea = 0.3;
 
 /// A point of a region, and where a spline surface comes closest to it.
 struct SurfaceSample {
