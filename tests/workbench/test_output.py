@@ -9,6 +9,8 @@ import pytest
 from conftest import wavy_face
 
 import trimquad
+from trimquad import regions
+from trimquad.error import Error
 from trimquad.output import OutputFolder
 from trimquad.source import Source
 
@@ -334,6 +336,28 @@ def test_a_mesh_that_its_creases_do_not_divide_or_whose_edges_are_chosen_stays_w
     assert (region.error is None) == (region.fitted_from is not region) == ("align" not in given)
     assert result.report["options"]["features"] == "align"
     assert not any("divided" in line for line in result.warnings)
+
+
+def test_a_fit_that_is_given_up_for_dividing_is_gone_on_with_where_the_creases_do_not_divide(monkeypatch):
+    options = trimquad.Options(quads=100)
+    wanted = trimquad.convert(_folded_sheet(crease_from=9), options)
+    monkeypatch.setattr(regions, "MOST_WORK_BEFORE_DIVISION", 0)
+    monkeypatch.setattr(regions, "MOST_WORK_BY_TRIANGLE", 0)
+    given_up = []
+    fit = regions.fit
+
+    def noting(item, *arguments, **ways):
+        try:
+            return fit(item, *arguments, **ways)
+        except Error:
+            given_up.append(item.most_work)
+            raise
+
+    monkeypatch.setattr(regions, "fit", noting)
+    result = trimquad.convert(_folded_sheet(crease_from=9), options)
+    assert given_up == [0] and not result.failed
+    assert result.report["regions"][0]["features"]["creases"] is True
+    assert result.regions[0].fitted.control_points == wanted.regions[0].fitted.control_points
 
 
 def test_a_mesh_that_cannot_be_fitted_when_it_is_divided_either_is_told_of_as_a_whole(monkeypatch):
