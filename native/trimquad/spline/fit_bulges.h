@@ -1,11 +1,21 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "trimquad/spline/fit_folds.h"
+#include "trimquad/spline/fitted_region.h"
 
 namespace trimquad {
+
+/// The bulge at a place of a surface, or on the way up from there where it is near one: distances from
+/// triangles rise to sharp ridges, narrower than the way between places that are looked at. None elsewhere.
+/// \param knotIntervals the sides of the place's knot rectangle, quads
+/// \param isInChart     whether a place belongs to the surface
+std::optional<Bulge> bulgeNear(const FittedRegion& region, const SplineSurface& surface,
+                               const Eigen::Vector2d& at, const Eigen::Vector2d& knotIntervals,
+                               const std::function<bool(const Eigen::Vector2d&)>& isInChart);
 
 /// Where surfaces had bulges between the feet of samples, at least once. Each is one of the places of the fit
 /// from then on, to come back to the region from where the surface is.

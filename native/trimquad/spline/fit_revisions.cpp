@@ -1,13 +1,20 @@
 #include "trimquad/spline/fit_rounds.h"
 
-/// Revisions of a fit that is there: of some of its charts, which start from the samples' feet and the knots
-/// of the fit.
+/// Revisions of a fit that is there, which start from its samples' feet: over fewer knots, or of some of its
+/// charts.
 
 namespace trimquad {
 namespace {
 
 /// Rounds of parameter correction on halved knots.
 constexpr int kMaxCorrectionsHalved = 4;
+/// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
+/// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
+/// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
+/// parameter correction on each.
+constexpr double kSpacedFor = 0.5, kSpacedPoles = 0.55, kSpacingReserve = 0.9, kWorthSpacing = 0.95,
+                 kLeastSpacing = 0.75;
+constexpr int kMaxSpacings = 6, kMaxSpacedCorrections = 4;
 
 }  // namespace
 
@@ -62,6 +69,41 @@ std::optional<FittedSurface> FitRounds::closer(const FittedSurface& fitted, cons
       result = result_;
   }
   return result;
+}
+
+/// The surfaces, which are within the tolerance, or such over fewer knots. Knots are halved where they do not
+/// do, which leaves up to twice as many in every direction as there need be.
+FittedSurface FitRounds::economised() {
+  kept_ = result_;
+  int fewest = poles();
+  bool has = respaceByBending(kSpacedFor * tolerance_, kSpacedPoles);
+  for (int attempt = 0; attempt < kMaxSpacings && has && poles() < kWorthSpacing * fewest; ++attempt) {
+    if (fitsRespaced()) {
+      kept_ = result_;
+      fewest = poles();
+      has = respaceByResidual(kSpacingReserve * tolerance_, kLeastSpacing);
+    } else {
+      has = respaceByResidual(kSpacingReserve * tolerance_, 1);
+    }
+  }
+  return std::move(*kept_);
+}
+
+/// Whether surfaces over knots that were respaced keep the tolerance, from the feet on those before.
+bool FitRounds::fitsRespaced() {
+  takeSamples();
+  measure(samples_, feet_);
+  moveTo(feet_, samples_);
+  solve();
+  for (corrections_ = 0; deviation_.max > tolerance_; solve()) {
+    const bool close = deviation_.max <= kClose * tolerance_;
+    if (corrections_ > 0 &&
+        (!close || corrections_ >= kMaxSpacedCorrections || deviation_.max > kCorrectionPays * previous_.max))
+      return false;
+    correct();
+  }
+  return deviation_.turnedOver.empty() && verified(tolerance_, 0) && result_.bulges == 0 &&
+         result_.folded.empty();
 }
 
 std::shared_ptr<const FittedSurface::Continuation> FitRounds::continuation() {

@@ -15,13 +15,10 @@
 namespace trimquad {
 namespace {
 
-/// Rounds of parameter correction on the same knots, and the part of the deviation that one has to leave at
-/// most for another to be worth it.
-constexpr int kMaxCorrections = 4;
-constexpr double kCorrectionPays = 0.85;
-/// The same where the deviation is below so many tolerances: the last bit is cheaper than more knots.
-constexpr double kClose = 3;
-constexpr int kMaxCorrectionsClose = 12;
+/// Rounds of parameter correction on the same knots; the same where the deviation is close, and the part of
+/// it that one has to leave at most there for another to be worth it: the last bit is cheaper than more
+/// knots.
+constexpr int kMaxCorrections = 4, kMaxCorrectionsClose = 12;
 constexpr double kCorrectionPaysClose = 0.96;
 /// Multiple of the tolerance below which parameters are corrected, unless knots alone do not help: feet on a
 /// surface that is still far from the region would bring its waves into the parameters.
@@ -65,17 +62,6 @@ constexpr double kFewTurned = 0.05;
 constexpr int kFoldPatience = 8;
 /// Rounds that are spent on getting rid of bulges between samples.
 constexpr int kBulgePatience = 10;
-/// Part of a bulge's height from which on one is looked for around; steps of that, by the knot intervals, and
-/// how often they are halved.
-constexpr double kNearBulge = 0.75, kClimb = 0.1;
-constexpr int kClimbHalvings = 3;
-/// Part of the tolerance that respaced knots are to keep, by the surface's bending, with at most this part of
-/// the poles; the same by the residual on respaced knots; part of the poles that are to go for a fit to be
-/// worth it; part of the knots that stay at least from one such fit to the next; such fits, and rounds of
-/// parameter correction on each.
-constexpr double kSpacedFor = 0.5, kSpacedPoles = 0.55, kSpacingReserve = 0.9, kWorthSpacing = 0.95,
-                 kLeastSpacing = 0.75;
-constexpr int kMaxSpacings = 6, kMaxSpacedCorrections = 4;
 /// Part of the way to an opposite sheet that a surface should not be farther away than, and how many times
 /// closer than elsewhere it is to stay for that at most.
 constexpr double kOwnPart = 0.4, kMostCloser = 4;
@@ -437,37 +423,9 @@ bool FitRounds::verified(double tolerance, double folds) {
   return true;
 }
 
-/// The bulge at a place, or on the way up from there where it is near one: distances from triangles rise to
-/// sharp ridges, narrower than the way between places that are looked at.
 std::optional<Bulge> FitRounds::bulgeAt(const FitPlace& x) const {
-  const auto& surface = result_.surfaces[x.chart];
-  const auto farther = [&](const Eigen::Vector2d& at, double than) {
-    return fitted_.farther(surface.jet(surface.wrappedU(at[0]), at[1]), than);
-  };
-  const double limit = fitted_.limit();
-  auto highest = farther(x.parameter, kNearBulge * limit);
-  if (!highest) return {};
-  Eigen::Vector2d at = x.parameter, step = kClimb * knotIntervals(x);
-  for (int halvings = 0; highest->distance <= limit && halvings <= kClimbHalvings;) {
-    bool rises = false;
-    for (const int axis : {0, 1})
-      for (const double way : {1, -1}) {
-        Eigen::Vector2d there = at;
-        there[axis] += way * step[axis];
-        if (!isInChart({x.chart, there})) continue;
-        const auto found = farther(there, highest->distance);
-        if (!found) continue;
-        highest = found;
-        at = there;
-        rises = true;
-        break;
-      }
-    if (rises) continue;
-    step /= 2;
-    ++halvings;
-  }
-  if (highest->distance <= limit) return {};
-  return highest;
+  const auto isInside = [&](const Eigen::Vector2d& at) { return isInChart({x.chart, at}); };
+  return bulgeNear(fitted_, result_.surfaces[x.chart], x.parameter, knotIntervals(x), isInside);
 }
 
 /// What the surfaces are between the feet, where they come close.
@@ -541,41 +499,6 @@ bool FitRounds::refine() {
   const int patience = far ? kPatienceFar : poles() > kFewPoles ? kPatience : kPatienceWithFew;
   if (hopeless || vain || idle_ > patience || !insertKnots() || poles() > maxPoles_) throw unreachable();
   return true;
-}
-
-/// The surfaces, which are within the tolerance, or such over fewer knots. Knots are halved where they do not
-/// do, which leaves up to twice as many in every direction as there need be.
-FittedSurface FitRounds::economised() {
-  kept_ = result_;
-  int fewest = poles();
-  bool has = respaceByBending(kSpacedFor * tolerance_, kSpacedPoles);
-  for (int attempt = 0; attempt < kMaxSpacings && has && poles() < kWorthSpacing * fewest; ++attempt) {
-    if (fitsRespaced()) {
-      kept_ = result_;
-      fewest = poles();
-      has = respaceByResidual(kSpacingReserve * tolerance_, kLeastSpacing);
-    } else {
-      has = respaceByResidual(kSpacingReserve * tolerance_, 1);
-    }
-  }
-  return std::move(*kept_);
-}
-
-/// Whether surfaces over knots that were respaced keep the tolerance, from the feet on those before.
-bool FitRounds::fitsRespaced() {
-  takeSamples();
-  measure(samples_, feet_);
-  moveTo(feet_, samples_);
-  solve();
-  for (corrections_ = 0; deviation_.max > tolerance_; solve()) {
-    const bool close = deviation_.max <= kClose * tolerance_;
-    if (corrections_ > 0 &&
-        (!close || corrections_ >= kMaxSpacedCorrections || deviation_.max > kCorrectionPays * previous_.max))
-      return false;
-    correct();
-  }
-  return deviation_.turnedOver.empty() && verified(tolerance_, 0) && result_.bulges == 0 &&
-         result_.folded.empty();
 }
 
 /// More fairness where the surfaces are turned over in few places.

@@ -117,6 +117,11 @@ class FitRounds {
   /// Part of the samples at which the surface may be turned over in folds within what is enough, where no
   /// surface without them is found.
   static constexpr double kSmallFolds = 3e-3;
+  /// Part of the deviation that a round of parameter correction has to leave at most for another to be worth
+  /// it.
+  static constexpr double kCorrectionPays = 0.85;
+  /// So many tolerances are close.
+  static constexpr double kClose = 3;
 
   struct State {
     std::vector<SurfaceSample> samples;

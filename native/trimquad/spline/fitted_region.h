@@ -25,10 +25,8 @@ class FittedRegion {
   Eigen::Vector3d closest(const Eigen::Vector3d& p) const;
   /// Whether the region faces that way within what is enough of a point: small curls of it may be flattened.
   bool facesLikewise(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
-  /// Where a surface is farther away than is enough, with some reserve for the places beside it where the
-  /// tolerance leaves any; none elsewhere.
-  std::optional<Bulge> bulgeAt(const SplineSurface::Jet& jet) const { return farther(jet, limit()); }
-  /// From where on there are bulges.
+  /// From how far away on there are bulges: somewhat less than is enough, for the places beside them, where
+  /// the tolerance leaves any.
   double limit() const;
   /// Where a surface is farther away than that; none elsewhere. Beyond the boundary it counts where it is
   /// less far beyond than above or below: the rest is trimmed off. Of a true surface the triangles are a

@@ -73,24 +73,23 @@ void ModelTrimmer::settleRunEnds() {
     double distance, byMap;  ///< of the foot; of the one that is reached from the map's parameters
   };
   std::map<std::tuple<int, int, int>, std::vector<End>> ends;  // by corner, sheet, vertex
-  const auto collect = [&](BoundaryRun& run, int id, const SampledCurve& sampled, std::size_t side) {
+  const auto collect = [&](int id, const CurveWithSides& curve, std::size_t side) {
+    BoundaryRun& run = runs_[curve.sides[side].run - runs_.data()];
     const Sheet& sheet = sheets_[sheetOf(run)];
-    const auto& feet = sampled.foot[side];
+    const auto& feet = curve.feetOf(side);
+    const auto& points = curve.samplesOf(side).point;
     for (const bool atStart : {true, false}) {
       const RunEnd& end = atStart ? run.start : run.end;
       const Eigen::Vector2d& foot = atStart ? feet.front() : feet.back();
-      const Eigen::Vector3d& point = atStart ? sampled.point.front() : sampled.point.back();
+      const Eigen::Vector3d& point = atStart ? points.front() : points.back();
       const auto away = [&](const Eigen::Vector2d& x) { return (sheet.jet(x).s - point).norm(); };
       ends[{cornerOf(end), sheetOf(run), end.vertex}].push_back(
           {&run, atStart, id, foot, away(foot),
            away(sheet.footPoint(point, atStart ? run.uv.front() : run.uv.back()))});
     }
   };
-  for (const auto& [id, curve] : curves_) {
-    const bool shared = curve.sides.size() == 2;
-    for (std::size_t k = 0; k < curve.sides.size(); ++k)
-      collect(runs_[curve.sides[k].run - runs_.data()], id, curve.sampled[shared ? 0 : k], shared ? k : 0);
-  }
+  for (const auto& [id, curve] : curves_)
+    for (std::size_t side = 0; side < curve.sides.size(); ++side) collect(id, curve, side);
   std::set<int> led;
   for (const auto& [corner, found] : ends) {
     const End& nearest = *std::min_element(
@@ -105,7 +104,9 @@ void ModelTrimmer::settleRunEnds() {
       led.insert(end.curve);
     }
   }
-  for (const int id : led) sample(id, curves_.at(id));
+  forEachCurve([&](int id, CurveWithSides& curve) {
+    if (led.contains(id)) sample(id, curve);
+  });
 }
 
 void ModelTrimmer::intersect(CurveWithSides& curve) const {

@@ -185,14 +185,13 @@ std::vector<SheetCorner> ModelTrimmer::tangentCorners() const {
       for (const auto& end : {curve.sides[0].run->start, curve.sides[0].run->end}) corners[cornerOf(end)];
   for (const auto& [id, curve] : curves_)
     for (std::size_t k = 0; k < curve.sides.size(); ++k) {
-      const auto& sampled = curve.sampled[curve.sides.size() == 2 ? 0 : k];
-      const auto& feet = sampled.foot[curve.sides.size() == 2 ? k : 0];
+      const auto& points = curve.samplesOf(k).point;
+      const auto& feet = curve.feetOf(k);
       const BoundaryRun& run = *curve.sides[k].run;
       for (const bool atStart : {true, false}) {
         const auto corner = corners.find(cornerOf(atStart ? run.start : run.end));
         if (corner == corners.end()) continue;
-        corner->second.point =
-            pointOfCorner(corner->first, atStart ? sampled.point.front() : sampled.point.back());
+        corner->second.point = pointOfCorner(corner->first, atStart ? points.front() : points.back());
         corner->second.uses.push_back({sheetOf(run), atStart ? feet.front() : feet.back(), false, {}});
       }
     }

@@ -47,6 +47,12 @@ struct CurveWithSides {
   std::optional<IntersectionCurve> intersection;
   bool folded = false;  ///< whether its sheets were tangent, and have been given a slight edge there
   std::vector<TangentStretch> tangent;  ///< where they have none
+
+  const SampledCurve& samplesOf(std::size_t side) const { return sampled[sides.size() == 2 ? 0 : side]; }
+  /// Of these samples, on the side's sheet.
+  const std::vector<Eigen::Vector2d>& feetOf(std::size_t side) const {
+    return samplesOf(side).foot[sides.size() == 2 ? side : 0];
+  }
 };
 
 /// Trims fitted surfaces and joins them. Everything that does not depend on how closely free edges follow
@@ -126,9 +132,7 @@ class ModelTrimmer {
       std::vector<std::vector<Eigen::Vector2d>> boundary;
       for (const auto& [id, curve] : curves_)
         for (std::size_t side = 0; side < curve.sides.size(); ++side)
-          if (sheetOf(*curve.sides[side].run) == k)
-            boundary.push_back(curve.sides.size() == 2 ? curve.sampled[0].foot[side]
-                                                       : curve.sampled[side].foot[0]);
+          if (sheetOf(*curve.sides[side].run) == k) boundary.push_back(curve.feetOf(side));
       sheets_[k].surface = withSeamAt(sheets_[k].surface, seamPlace(sheets_[k], boundary));
     }
   }

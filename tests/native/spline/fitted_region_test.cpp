@@ -23,22 +23,22 @@ class FittedSquare : public testing::Test {
 };
 
 TEST_F(FittedSquare, BulgesAreFartherAwayThanIsEnough) {
-  EXPECT_FALSE(fitted.bulgeAt(level(0.25, 0.5, 0.9 * kTolerance)));
-  const auto bulge = fitted.bulgeAt(level(0.25, 0.5, -10 * kTolerance));
+  EXPECT_FALSE(fitted.farther(level(0.25, 0.5, 0.9 * kTolerance), fitted.limit()));
+  const auto bulge = fitted.farther(level(0.25, 0.5, -10 * kTolerance), fitted.limit());
   ASSERT_TRUE(bulge);
   EXPECT_DOUBLE_EQ(bulge->distance, 10 * kTolerance);
   EXPECT_EQ(bulge->point, Eigen::Vector3d(0.25, 0.5, 0));
 }
 
 TEST_F(FittedSquare, WhatGoesOnBeyondTheBoundaryIsNoBulge) {
-  EXPECT_FALSE(fitted.bulgeAt(level(1.3, 0.5, 0)));
+  EXPECT_FALSE(fitted.farther(level(1.3, 0.5, 0), fitted.limit()));
   // A surface may be anywhere there, if it is farther beyond the boundary than above it.
-  EXPECT_FALSE(fitted.bulgeAt(level(1.3, 0.5, 10 * kTolerance)));
-  EXPECT_FALSE(fitted.bulgeAt(level(-0.3, 1.3, -10 * kTolerance)));
+  EXPECT_FALSE(fitted.farther(level(1.3, 0.5, 10 * kTolerance), fitted.limit()));
+  EXPECT_FALSE(fitted.farther(level(-0.3, 1.3, -10 * kTolerance), fitted.limit()));
 }
 
 TEST_F(FittedSquare, AboveTheBoundaryBulgesCount) {
-  const auto bulge = fitted.bulgeAt(level(1 + kTolerance, 0.5, 10 * kTolerance));
+  const auto bulge = fitted.farther(level(1 + kTolerance, 0.5, 10 * kTolerance), fitted.limit());
   ASSERT_TRUE(bulge);
   EXPECT_DOUBLE_EQ(bulge->distance, 10 * kTolerance);
 }
