@@ -29,8 +29,12 @@ REFITS = (
 # Of more fairness, for charts whose faces are at fault.
 STEPS = 2
 # The parts of a region that was cut are tangent to each other, so that their common edge is where their deviations happen to
-# have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first.
-CLOSER = 0.1
+# have it. Where trims cross or faces are at fault, the parts around are fitted to this part of the tolerance first; as far as
+# they come that close.
+CLOSER = {"part": 0.1, "only": False, "holds_corners": False}
+# First, where surfaces are nearly tangent to others and too far from these to be moved onto a common edge: they turn back in
+# corners, where nothing holds them.
+HELD = {"holds_corners": True}
 # How often a region that was left out is tried again between others than before.
 TAKEN_BACK = 2
 # The part of the tolerance that a surface may come to be away when it is moved to agree with its neighbours; by kind of input.
@@ -61,7 +65,7 @@ def trim(result, progress):
                 result.native_shape = native.assemble(result.spline)
             again = (
                 _refit_faulty(result, checks, progress)
-                or _fit_apart_closer(result, progress)
+                or _fit_apart_again(result, progress)
                 or _take_back(result)
             )
             if not again:
@@ -169,7 +173,10 @@ def _refit_all(at_fault, result, progress):
     for (item, *_), fitted in zip(again, before):
         if item.error is None:
             continue
-        if _fit_around_closer(item, result, progress):
+        if item.before_held:
+            item.fitted, item.refits, item.bisections, item.smoothings, item.fitted_in = item.before_held
+            item.holds_corners, item.before_held, item.error = False, None, None
+        elif _fit_around_closer(item, result, progress):
             item.fitted, item.error = fitted, None
         else:
             _leave_out(item, fitted, result)
@@ -259,45 +266,50 @@ def _applies(way, item, charts):
     if "smallest_rectangle" in way:
         return bool(charts) and not item.fitted.several
     if "cut" in way:
-        return bool(charts)
+        return bool(charts) and item.before_held is None
     return "smoother" not in way or (bool(charts) and item.fitted.several)
 
 
 def _fit_parts_closer(item, result, progress):
     """Fits the parts of cut regions around a region more closely, once. Whether there are any that could be."""
-    parts = [(part,) for part in _touching(item, result) if part.cut_from is not None]
-    return any(_at_once(_fit_closer, parts, result, progress))
+    parts = [(part, CLOSER) for part in _touching(item, result) if part.cut_from is not None]
+    return any(_at_once(_fit_again, parts, result, progress))
 
 
-def _fit_apart_closer(result, progress):
-    """Fits regions of a CAD model more closely, once, whose surfaces are nearly tangent to others and too far from them to
-    be moved onto a common edge, or make a sharp wedge with others and cut these too far from the edge. Whether there are
-    any that could be."""
+def _fit_apart_again(result, progress):
+    """Fits regions of a CAD model again, more closely in the end, whose surfaces are nearly tangent to others and too far
+    from them to be moved onto a common edge, or make a sharp wedge with others and cut these too far from the edge. Whether
+    there are any that could be."""
     if result.source.kind != "cad" or result.exhausted:
         return False
-    apart = [(result.regions[k],) for k in sorted(result.spline.loose_regions | result.spline.stray_regions)]
-    return any(_at_once(_fit_closer, apart, result, progress))
+    loose = [result.regions[k] for k in sorted(result.spline.loose_regions)]
+    stray = [result.regions[k] for k in sorted(result.spline.stray_regions - result.spline.loose_regions)]
+    held = [(item, HELD) for item in loose if item.cut_from is None]
+    closer = [(item, CLOSER) for item in loose + stray]
+    return any(_at_once(_fit_again, held, result, progress)) or any(_at_once(_fit_again, closer, result, progress))
 
 
 def _fit_around_closer(item, result, progress):
     """Fits all regions around a region more closely, once: what is narrow beside the tolerance vanishes between them
     otherwise. Whether there are any that could be."""
-    around = [(other,) for other in _touching(item, result) if other is not item]
-    return any(_at_once(_fit_closer, around, result, progress))
+    around = [(other, CLOSER) for other in _touching(item, result) if other is not item]
+    return any(_at_once(_fit_again, around, result, progress))
 
 
 def _touching(item, result):
     return [result.regions[k] for k in load().touching_regions(result.model, result.regions.index(item))]
 
 
-def _fit_closer(item, result, progress):
-    """Fits a region more closely, unless that was done before or cannot be. Whether it is."""
-    if item.fitted is None or item.fitted_closer:
+def _fit_again(item, way, result, progress):
+    """Fits a region in another way, unless that was done before or cannot be. Whether it is."""
+    if item.fitted is None or way in item.fitted_in:
         return False
-    item.fitted_closer = True
+    item.fitted_in = [*item.fitted_in, way]
+    if way is HELD:
+        item.before_held = item.fitted, item.refits, item.bisections, item.smoothings, item.fitted_in
     try:
         with progress.stage("fit", item.name) as native_progress:
-            item.fitted = regions.fit(item, result, native_progress, part=CLOSER, only=False)
+            item.fitted = regions.fit(item, result, native_progress, **way)
         return True
     except Error as error:
         if error.kind == "cancelled":

@@ -101,7 +101,9 @@ class RegionResult:
         self.work_of_maps = 0
         self.may_be_divided = False  # along its sharp edges, as it failed
         self.cut_from = None
-        self.fitted_closer = False
+        self.holds_corners = False
+        self.before_held = None  # fit, refits, bisections, smoothings, fitted_in
+        self.fitted_in = []  # ways, arguments of fit(), in which it was fitted once more to suit others
         self.meetings = {}  # by region that its surfaces cross: CAD faces of both that meet without a common edge, or None
         self.left_out = None  # surfaces that could not be trimmed
         self.left_out_between = []  # each time those around it then
@@ -478,10 +480,13 @@ def _polygonal(quads, item, options):
     return quads
 
 
-def fit(item, result, progress, smallest_rectangle=False, slides=True, part=1.0, only=True):
+def fit(item, result, progress, smallest_rectangle=False, slides=True, holds_corners=None, part=1.0, only=True):
     """Surfaces of a region within this part of the tolerance; within all of it where that cannot be reached and is not asked
-    for `only`. A part is given up where it takes many more poles than the surfaces have now."""
+    for `only`. A part is given up where it takes many more poles than the surfaces have now. Whether corners are held stays as
+    it is for later fits."""
     native = load()
+    if holds_corners is not None:
+        item.holds_corners = holds_corners
     tolerance = part * result.fit_tolerance
     fit_options = _fit_options(
         item,
@@ -521,6 +526,7 @@ def _fit_options(item, result, smallest_rectangle=False, slides=True, max_poles=
         bisections=item.bisections,
         degree=result.options.degree,
         slides=slides,
+        holds_corners=item.holds_corners,
         threads=max(1, result.options.threads // len(result.regions)),
         max_poles=max_poles,
         max_work=item.most_work,

@@ -67,17 +67,17 @@ void bindSpline(py::module_& m) {
       .def_property_readonly("several", [](const FittedSurface& fit) { return fit.layout.has_value(); });
   py::class_<FitOptions>(m, "FitOptions")
       .def(py::init([](double tolerance, double enough, bool smallestRectangle,
-                       std::vector<std::vector<int>> bisections, int degree, bool slides, int threads,
-                       std::optional<int> maxPoles, std::optional<long> maxWork) {
-             FitOptions options{tolerance, enough, smallestRectangle, std::move(bisections), degree,
-                                slides,    threads};
+                       std::vector<std::vector<int>> bisections, int degree, bool slides, bool holdsCorners,
+                       int threads, std::optional<int> maxPoles, std::optional<long> maxWork) {
+             FitOptions options{tolerance, enough, smallestRectangle, std::move(bisections),
+                                degree,    slides, holdsCorners,      threads};
              if (maxPoles) options.maxPoles = *maxPoles;
              if (maxWork) options.maxWork = *maxWork;
              return options;
            }),
            py::kw_only(), py::arg("tolerance"), py::arg("enough"), py::arg("smallest_rectangle"),
-           py::arg("bisections"), py::arg("degree"), py::arg("slides"), py::arg("threads"),
-           py::arg("max_poles"), py::arg("max_work"));
+           py::arg("bisections"), py::arg("degree"), py::arg("slides"), py::arg("holds_corners"),
+           py::arg("threads"), py::arg("max_poles"), py::arg("max_work"));
   m.def("fit_surface", &fitSurface, py::arg("region"), py::arg("grid"), py::arg("options"),
         py::arg("progress"), Released());
   m.def("closer_charts", &closerCharts, py::arg("fitted"), py::arg("charts"), py::arg("region"),

@@ -186,13 +186,13 @@ def box_in_regions():
 def test_before_a_region_is_left_out_those_around_it_are_fitted_more_closely(one_region_fails):
     result = box_in_regions()
     assert not result.failed and one_region_fails[0] == [6, 6]
-    around = [r.fitted_closer for r in result.regions]
-    assert around.count(True) == 4 and not result.regions[2].fitted_closer
+    around = [joining.CLOSER in r.fitted_in for r in result.regions]
+    assert around.count(True) == 4 and not around[2]
 
 
 def test_a_region_that_was_left_out_is_taken_back_once_those_around_are_others(one_region_fails, monkeypatch):
     trims, failures = one_region_fails
-    monkeypatch.setattr(joining, "_fit_closer", lambda *_: False)
+    monkeypatch.setattr(joining, "_fit_again", lambda *_: False)
     assert [r.name for r in box_in_regions().failed] == ["region 2"] and trims == [6, 5]
     # Opposite faces have numbers that differ by one: 0 and 1, 2 and 3, 4 and 5.
     for other, last in (("region 4", [6, 5, 5, 6]), ("region 3", [6, 5, 5])):
@@ -226,7 +226,7 @@ def test_regions_that_are_at_fault_with_each_other_do_not_take_turns(monkeypatch
         item.fitted, item.error = None, error
 
     monkeypatch.setattr(joining, "_refit", refit)
-    monkeypatch.setattr(joining, "_fit_closer", lambda *_: False)
+    monkeypatch.setattr(joining, "_fit_again", lambda *_: False)
     result = box_in_regions()
     assert len(result.failed) == 2 and len(sets[-1]) == 1
 

@@ -65,6 +65,9 @@ constexpr int kBulgePatience = 10;
 /// Part of the way to an opposite sheet that a surface should not be farther away than, and how many times
 /// closer than elsewhere it is to stay for that at most.
 constexpr double kOwnPart = 0.4, kMostCloser = 4;
+/// Area whose weight a corner that is held carries in addition, quads^2.
+constexpr double kCornerArea = 0.3;
+
 std::string shortNumber(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
@@ -85,6 +88,7 @@ FitRounds::FitRounds(const Region& region, const FitOptions& options, const Poli
       progress_(progress),
       fitted_(region, tolerance_, enough_),
       policy_(policy),
+      holdsCorners_(options.holdsCorners),
       foldSpots_(policy.folds),
       slides_(options.slides && !policy.several) {}
 
@@ -140,6 +144,7 @@ void FitRounds::takeSamples() {
   samples_ = makeSamples(false);
   if (const JoinedKnots* knots = joinedKnots()) sampledOver_ = knots->charts;
   keepSheetsApart();
+  if (holdsCorners_) holdCorners();
   ofMap_.clear();
   for (const auto& s : samples_) ofMap_.push_back({s.chart, s.parameter});
   cells_ = cells();
@@ -159,6 +164,12 @@ void FitRounds::keepSheetsApart() {
       s.weight *= std::pow(std::clamp(closer, 1.0, kMostCloser), 2);
     }
   });
+}
+
+/// The samples begin with the region's vertices.
+void FitRounds::holdCorners() {
+  for (std::size_t v = 0; v < region_.corner.size(); ++v)
+    if (region_.corner[v]) samples_[v].weight += kCornerArea;
 }
 
 std::vector<std::vector<Datum>> FitRounds::dataOf(const std::vector<SurfaceSample>& samples,

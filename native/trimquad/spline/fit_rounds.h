@@ -135,6 +135,7 @@ class FitRounds {
   void continueFrom(const FittedSurface& fitted);
   void takeSamples();
   void keepSheetsApart();
+  void holdCorners();
   void solve();
   std::optional<Bulge> bulgeAt(const FitPlace& x) const;
   Deviation measure(std::vector<SurfaceSample>& samples, std::vector<FitPlace>& feet) const;
@@ -171,6 +172,7 @@ class FitRounds {
 
   const FittedRegion fitted_;
   const Policy policy_;
+  const bool holdsCorners_;
   std::vector<SplineSpace> sampledOver_;  ///< by chart of several surfaces: over whose knots `samples_` are
   std::optional<FittedSurface> kept_;     ///< within what is enough
   FoldSpots foldSpots_;

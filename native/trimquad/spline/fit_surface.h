@@ -26,6 +26,9 @@ struct FitOptions {
   /// Whether points of the region may slide along a single surface, which needs the fewest poles, as long as
   /// it folds over nowhere.
   bool slides = true;
+  /// Whether the region's corners weigh much more: there a surface is to meet two others, and within the
+  /// tolerance it may turn back just before, where it goes on beyond in another way. Costs poles.
+  bool holdsCorners = false;
   int threads = 1;  ///< the result does not depend on it
   /// Given up beyond about so many control points.
   int maxPoles = std::numeric_limits<int>::max();

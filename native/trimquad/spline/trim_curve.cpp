@@ -15,6 +15,8 @@ constexpr double kPullLength = 20;
 constexpr int kGapSamples = 1000, kGapSamplesPerPole = 4, kGoldenSections = 20;
 constexpr double kNearlyLargest = 0.7;
 constexpr double kExposedGap = 1.25, kExposedFall = 0.999;
+/// By how much more it moves on than keeps the corner's foot in the curve's end.
+constexpr double kExposedForward = 1.5;
 constexpr int kExposingSpans = 20, kExposingSamples = 64;
 
 Eigen::Matrix<double, 3, 2> metric(const Sheet& sheet, const Eigen::Vector2d& x) {
@@ -494,7 +496,10 @@ void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exa
     for (const double way : {1, -1}) {
       TrimPiece moved = piece;
       if (k > 0) moved.curve = withKnot(moved.curve, first + span);
-      moved.curve.poles.front() += way * aside;
+      auto& poles = moved.curve.poles;
+      const Eigen::Vector3d leg = poles[1] - poles[0];
+      // The corner's foot on the curve stays in its end: readers of STEP start there.
+      poles[0] += way * aside + kExposedForward * aside.squaredNorm() / leg.squaredNorm() * leg;
       if (!isFarthest(moved, span)) continue;
       piece = std::move(moved);
       return;
