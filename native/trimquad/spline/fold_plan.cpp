@@ -130,4 +130,26 @@ FoldPlan planFold(const SampledCurve& sampled, const std::array<const Sheet*, 2>
   return plan;
 }
 
+SampledCurve denserWhereTangent(const SampledCurve& sampled, const FoldPlan& plan, const Sheet& first,
+                                double step) {
+  SampledCurve result{sampled.curve, {}, {}, {}, std::vector<std::vector<Eigen::Vector2d>>(2)};
+  const auto along = quadsAlong(sampled, first);
+  for (std::size_t i = 0; i < sampled.s.size(); ++i) {
+    const bool divided = i + 1 < sampled.s.size() && plan.near[i] && plan.near[i + 1];
+    const int parts = divided ? std::max(1, int(std::ceil((along[i + 1] - along[i]) / step))) : 1;
+    for (int k = 0; k < parts; ++k) {
+      const double x = double(k) / parts;
+      const auto between = [&](const auto& values) -> std::decay_t<decltype(values[0])> {
+        if (k == 0) return values[i];
+        return (1 - x) * values[i] + x * values[i + 1];
+      };
+      result.t.push_back(between(sampled.t));
+      result.s.push_back(between(sampled.s));
+      result.point.push_back(k == 0 ? sampled.point[i] : sampled.curve->curve->point(result.t.back()));
+      for (const int side : {0, 1}) result.foot[side].push_back(between(sampled.foot[side]));
+    }
+  }
+  return result;
+}
+
 }  // namespace trimquad

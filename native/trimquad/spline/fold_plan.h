@@ -33,6 +33,11 @@ struct FoldPlan {
 FoldPlan planFold(const SampledCurve& sampled, const std::array<const Sheet*, 2>& sheets, bool firstOnLeft,
                   const std::array<std::array<bool, 2>, 2>& fixed);
 
+/// The curve with more samples in tangent stretches and their blends, at most `step` quads of the sheet
+/// apart; their feet are guesses.
+SampledCurve denserWhereTangent(const SampledCurve& sampled, const FoldPlan& plan, const Sheet& first,
+                                double step);
+
 /// From 0 to 1, without slope at both ends.
 double smoothStep(double x);
 

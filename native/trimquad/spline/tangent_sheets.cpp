@@ -30,6 +30,9 @@ constexpr double kFoldMissed = 0.001, kFlattened = 0.02;
 /// How much longer than nothing the sum of two curves' unit directions out of a corner is from which on both
 /// fix a sheet's tangent plane there.
 constexpr double kBends = 0.05;
+/// Quads between samples in tangent stretches at most: as close as the knots are, between samples that are
+/// farther apart sheets stray from the curve.
+constexpr double kTangentStep = 1.0 / 128;
 /// Quads over which sheets go back to where they were.
 constexpr double kFade = 1, kFadeFromCurve = 0.125;
 /// How far the strip goes on beyond the curve's ends, where the model's corners may lie off them: by its
@@ -227,11 +230,20 @@ class SheetJoiner {
     for (std::size_t c = 0; c < curves.size(); ++c)
       for (const int side : {0, 1}) sides_[bodyOf(curves[c].sides[side])].push_back({c, side});
     plans_.resize(curves.size());
+    denser_.resize(curves.size());
+    std::vector<std::array<std::array<bool, 2>, 2>> fixed;
+    for (std::size_t c = 0; c < curves.size(); ++c) fixed.push_back({fixedEnds(c, 0), fixedEnds(c, 1)});
     parallelEach(int(curves.size()), threads, [&](int c) {
-      const auto& [a, b] = curves[c].sides;
-      if (onCurve(c))
-        plans_[c] = planFold(*curves[c].sampled, {&fitted_[a.sheet], &fitted_[b.sheet]}, a.onLeft,
-                             {fixedEnds(c, 0), fixedEnds(c, 1)});
+      if (!onCurve(c)) return;
+      const auto& [a, b] = curves_[c].sides;
+      const std::array<const Sheet*, 2> both{&fitted_[a.sheet], &fitted_[b.sheet]};
+      const bool onLeft = a.onLeft;
+      const auto plan = [&] { plans_[c] = planFold(*curves_[c].sampled, both, onLeft, fixed[c]); };
+      plan();
+      if (plans_[c].tangent.empty()) return;
+      denser_[c] = denserWhereTangent(*curves_[c].sampled, plans_[c], fitted_[a.sheet], kTangentStep);
+      curves_[c].sampled = &denser_[c];
+      plan();
     });
   }
 
@@ -386,7 +398,8 @@ class SheetJoiner {
 
   std::vector<Sheet>& sheets_;
   const std::vector<Sheet> fitted_;
-  const std::vector<TangentCurve>& curves_;
+  std::vector<TangentCurve> curves_;
+  std::vector<SampledCurve> denser_;  ///< by curve, where it has tangent stretches
   const std::vector<SheetCorner>& corners_;
   const JoinLimits limits_;
   int threads_;
