@@ -64,8 +64,8 @@ def trim(result, progress):
                 )
                 result.native_shape = native.assemble(result.spline)
             again = (
-                _refit_faulty(result, checks, progress)
-                or _fit_apart_again(result, progress)
+                _fit_apart_again(result, checks, progress)
+                or _refit_faulty(result, checks, checks.faults, progress)
                 or _take_back(result)
             )
             if not again:
@@ -100,14 +100,14 @@ def trim(result, progress):
         raise cancelled()
 
 
-def _refit_faulty(result, checks, progress):
-    """Fits regions again whose faces OpenCASCADE finds at fault (FaceChecks). Whether there were any."""
+def _refit_faulty(result, checks, faults, progress):
+    """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any. faults: method of FaceChecks"""
     faulty = {}  # index of the region: charts and a fault
     faces = result.spline.faces
     folded = [r.fitted.folded_charts if r.fitted is not None else () for r in result.regions]
     folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
     with progress.stage("check") as native_progress:
-        found = checks.faults(result.spline, folded_faces, result.options.threads, native_progress)
+        found = faults(result.spline, folded_faces, result.options.threads, native_progress)
         result.work_of_checks += native_progress.work
     for face, faults in zip(faces, found):
         if faults:
@@ -276,17 +276,24 @@ def _fit_parts_closer(item, result, progress):
     return any(_at_once(_fit_again, parts, result, progress))
 
 
-def _fit_apart_again(result, progress):
+def _fit_apart_again(result, checks, progress):
     """Fits regions of a CAD model again, more closely in the end, whose surfaces are nearly tangent to others and too far
-    from them to be moved onto a common edge, or make a sharp wedge with others and cut these too far from the edge. Whether
-    there are any that could be."""
+    from them to be moved onto a common edge, or make a sharp wedge with others and cut these too far from the edge; those
+    first whose faces are likely to be at fault. Whether there are any that could be."""
     if result.source.kind != "cad" or result.exhausted:
         return False
     loose = [result.regions[k] for k in sorted(result.spline.loose_regions)]
     stray = [result.regions[k] for k in sorted(result.spline.stray_regions - result.spline.loose_regions)]
-    held = [(item, HELD) for item in loose if item.cut_from is None]
-    closer = [(item, CLOSER) for item in loose + stray]
-    return any(_at_once(_fit_again, held, result, progress)) or any(_at_once(_fit_again, closer, result, progress))
+    held = [(item, HELD) for item in loose if item.cut_from is None and HELD not in item.fitted_in]
+    closer = [(item, CLOSER) for item in loose + stray if CLOSER not in item.fitted_in]
+    if not held and not closer:
+        return False
+    # All pairs of faces would be checked again afterwards.
+    return (
+        _refit_faulty(result, checks, checks.likely_faults, progress)
+        or any(_at_once(_fit_again, held, result, progress))
+        or any(_at_once(_fit_again, closer, result, progress))
+    )
 
 
 def _fit_around_closer(item, result, progress):

@@ -171,6 +171,18 @@ FaceChecks::FaceChecks(std::string checker) : checker_(std::move(checker)) {}
 std::vector<std::vector<FaceFault>> FaceChecks::faults(const SplineModel& model,
                                                        const std::vector<int>& folded, int threads,
                                                        const Progress& progress) {
+  return checked(model, folded, true, threads, progress);
+}
+
+std::vector<std::vector<FaceFault>> FaceChecks::likelyFaults(const SplineModel& model,
+                                                             const std::vector<int>& folded, int threads,
+                                                             const Progress& progress) {
+  return checked(model, folded, false, threads, progress);
+}
+
+std::vector<std::vector<FaceFault>> FaceChecks::checked(const SplineModel& model,
+                                                        const std::vector<int>& folded, bool allPairs,
+                                                        int threads, const Progress& progress) {
   const auto faces = assembledFaces(model);
   std::vector<Shape> inFile;
   // Written and read where pairs are to be checked.
@@ -238,7 +250,8 @@ std::vector<std::vector<FaceFault>> FaceChecks::faults(const SplineModel& model,
   for (int f = 0; f < int(faces.size()); ++f) withItself.push_back({f, f});
   checkPairs(withItself);
   checkPairs(neighboursToCheckFirst(model, folded));
-  if (std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
+  if (allPairs &&
+      std::all_of(result.begin(), result.end(), [](const auto& faults) { return faults.empty(); }))
     checkPairs(closePairs(model, facesInFile()));
   return result;
 }

@@ -45,6 +45,9 @@ class FaceChecks {
   /// where the program cannot be run, Error(Cancelled).
   std::vector<std::vector<FaceFault>> faults(const SplineModel& model, const std::vector<int>& folded,
                                              int threads, const Progress& progress);
+  /// Those that come first, without the last and longest part: all pairs.
+  std::vector<std::vector<FaceFault>> likelyFaults(const SplineModel& model, const std::vector<int>& folded,
+                                                   int threads, const Progress& progress);
 
   /// Two CAD faces, one of each region, that cross each other as they are, or else touch: then surfaces that
   /// follow them do, or cross. None where no two of them do, or the model is one of a mesh. Throws
@@ -57,6 +60,9 @@ class FaceChecks {
   std::vector<std::string> faultsOfWhole(const SplineModel& model, const Progress& progress) const;
 
  private:
+  std::vector<std::vector<FaceFault>> checked(const SplineModel& model, const std::vector<int>& folded,
+                                              bool allPairs, int threads, const Progress& progress);
+
   Checker checker_;
   std::map<std::string, int> numbers_;  ///< of all that makes up a face, an edge or a vertex
   std::map<std::vector<int>, std::vector<std::string>> known_;  ///< by numbers of faces

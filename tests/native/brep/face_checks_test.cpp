@@ -39,11 +39,12 @@ TEST(FaceChecks, facesThatCrossAreFoundWhereverTheyAre) {
   const Faults crossing = checksOf().faults(model, {}, 1, unwatched);
   EXPECT_EQ(crossing[0].at(0).other, 1);
   EXPECT_EQ(crossing[1].at(0).other, 0);
+  EXPECT_EQ(checksOf().likelyFaults(model, {}, 1, unwatched), Faults(2));
   for (const auto& folded : {std::vector<int>{}, {0}, {1}})
     for (const auto& faults : checksOf().faults(model, folded, 2, unwatched)) EXPECT_NE(faults, none);
   // Also such as are bent against each other, which are looked at before the others.
   model.faces[1].region = model.faces[0].region;
-  for (const auto& faults : checksOf().faults(model, {}, 1, unwatched)) EXPECT_NE(faults, none);
+  for (const auto& faults : checksOf().likelyFaults(model, {}, 1, unwatched)) EXPECT_NE(faults, none);
 }
 
 TEST(FaceChecks, aFaceThatCrossesItselfIsFound) {
