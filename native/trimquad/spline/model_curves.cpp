@@ -130,8 +130,7 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
   if (curve.sides.size() != 2) {
     for (std::size_t k = 0; k < curve.sides.size(); ++k) {
       const SheetSide& side = curve.sides[k];
-      result.push_back(
-          {freeEdgeOf(id, curve.sampled[k], side, tolerances[side.run->region]), {&side}, false});
+      result.push_back({freeEdgeOf(id, curve.sampled[k], side, tolerances[side.run->region]), {&side}});
     }
     return result;
   }
@@ -149,32 +148,51 @@ std::vector<ModelTrimmer::CurveEdge> ModelTrimmer::edgesOf(int id, const CurveWi
       return sharedEdge(*curve.intersection, piece.start == piece.end, start, end, curve.sides, progress_);
     });
   }
-  const bool loose = !edge;
-  if (loose) {
-    const auto within = [&](double near) {
-      ByteKey key = keyOf(curve.sampled.front(), curve.sides);
-      for (const auto& side : curve.sides) key.add(side.start).add(side.end);
-      key.add(near);
-      return memory_.recall<std::vector<TrimPiece>>("loose edge", std::move(key), [&] {
-        return looseEdge(curve.sampled.front(), curve.sides, near, progress_);
-      });
-    };
-    const double near = kTouchCloseness * std::min(tolerances[a.run->region], tolerances[b.run->region]);
-    const double nearer = std::min(near, kTangentGap * model_.diagonal);
-    // Sheets that agree do so on the curve itself; where it cannot be followed so closely, not as well.
-    if (curve.sampled.front().apart(curve.sides) < kLooseGap * model_.diagonal) {
-      try {
-        edge = within(nearer);
-      } catch (const Error& error) {
-        if (error.kind() != Error::Kind::Stage) throw;
-      }
+  const double looseGap = kLooseGap * model_.diagonal;
+  const auto gapOf = [](const std::vector<TrimPiece>& pieces) {
+    double gap = 0;
+    for (const auto& piece : pieces) gap = std::max(gap, piece.gap);
+    return gap;
+  };
+  bool loose = !edge;
+  // Sheets that are tangent somewhere may have an intersection that turns back there.
+  if (loose || gapOf(*edge) > looseGap) {
+    try {
+      auto touching = looseEdgeOf(curve, tolerances);
+      loose = loose || gapOf(touching) < gapOf(*edge);
+      if (loose) edge = std::move(touching);
+    } catch (const Error& error) {
+      if (loose || error.kind() != Error::Kind::Stage) throw;
     }
-    if (!edge) edge = within(near);
   }
-  for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance, kLooseGap * model_.diagonal);
+  for (auto& piece : *edge) exposeGap(piece, curve.sides, kSmallestTolerance, looseGap);
   const bool strays = !loose && this->strays(curve, *edge);
-  result.push_back({std::move(*edge), {&a, &b}, loose, strays});
+  result.push_back({std::move(*edge), {&a, &b}, strays});
   return result;
+}
+
+/// The edge of two sheets along a curve that they only touch along.
+std::vector<TrimPiece> ModelTrimmer::looseEdgeOf(const CurveWithSides& curve,
+                                                 const std::vector<double>& tolerances) const {
+  const SampledCurve& sampled = curve.sampled.front();
+  const auto within = [&](double near) {
+    ByteKey key = keyOf(sampled, curve.sides);
+    for (const auto& side : curve.sides) key.add(side.start).add(side.end);
+    key.add(near);
+    return memory_.recall<std::vector<TrimPiece>>(
+        "loose edge", std::move(key), [&] { return looseEdge(sampled, curve.sides, near, progress_); });
+  };
+  const double near = kTouchCloseness * std::min(tolerances[curve.sides[0].run->region],
+                                                 tolerances[curve.sides[1].run->region]);
+  // Sheets that agree do so on the curve itself; where it cannot be followed so closely, not as well.
+  if (sampled.apart(curve.sides) < kLooseGap * model_.diagonal) {
+    try {
+      return within(std::min(near, kTangentGap * model_.diagonal));
+    } catch (const Error& error) {
+      if (error.kind() != Error::Kind::Stage) throw;
+    }
+  }
+  return within(near);
 }
 
 /// Whether the edge that two sheets share leaves a place of its curve beyond both of them, and far away:

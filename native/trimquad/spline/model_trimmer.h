@@ -161,11 +161,12 @@ class ModelTrimmer {
   struct CurveEdge {
     std::vector<TrimPiece> pieces;
     std::vector<const SheetSide*> sides;
-    bool loose;           ///< on sheets that only touch
     bool strays = false;  ///< leaves part of the curve beyond both sheets, farther away than is enough
   };
   std::vector<CurveEdge> edgesOf(int id, const CurveWithSides& curve,
                                  const std::vector<double>& tolerances) const;
+  std::vector<TrimPiece> looseEdgeOf(const CurveWithSides& curve,
+                                     const std::vector<double>& tolerances) const;
   bool strays(const CurveWithSides& curve, const std::vector<TrimPiece>& edge) const;
   std::vector<TrimPiece> freeEdgeOf(int id, const SampledCurve& sampled, const SheetSide& side,
                                     double tolerance) const;

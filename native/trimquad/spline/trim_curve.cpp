@@ -14,7 +14,9 @@ namespace {
 constexpr double kPullLength = 20;
 constexpr int kGapSamples = 1000, kGapSamplesPerPole = 4, kGoldenSections = 20;
 constexpr double kNearlyLargest = 0.7;
-constexpr double kExposedGap = 1.25, kExposedFall = 0.999;
+/// How far the start of an edge with a gap is moved, by the gap; by which part of its distance that has to
+/// fall on the curve's first span, evenly at least, and from which part of the span on that is looked at.
+constexpr double kExposedGap = 1.25, kExposedFall = 0.1, kExposedNear = 1e-6;
 /// By how much more it moves on than keeps the corner's foot in the curve's end.
 constexpr double kExposedForward = 1.5;
 constexpr int kExposingSpans = 20, kExposingSamples = 64;
@@ -476,20 +478,25 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
 
 void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact, double most) {
   if (!(piece.gap > exact && piece.gap < most)) return;
-  const auto jet = sides[0].sheet->jet(piece.onSheet[0].poles.front());
-  const double first = piece.curve.first();
-  const Eigen::Vector3d along = piece.curve.derivatives(first, 1)[1];
-  const Eigen::Vector3d aside = kExposedGap * piece.gap * normal(jet).cross(along).normalized();
   std::vector<const Sheet*> sheets;
   for (const auto& side : sides) sheets.push_back(side.sheet);
+  const double first = piece.curve.first(), atFirst = gapAt(piece, sheets, first);
   // Looks at the first span before it searches the whole curve.
   const auto isFarthest = [&](TrimPiece& moved, double span) {
     const double atStart = gapAt(moved, sheets, first);
-    for (int i = 1; i <= kExposingSamples; ++i)
-      if (gapAt(moved, sheets, first + span * i / kExposingSamples) > kExposedFall * atStart) return false;
+    const auto falls = [&](double part) {
+      return gapAt(moved, sheets, first + part * span) <= (1 - kExposedFall * part) * atStart;
+    };
+    for (int i = kExposingSamples; i > 0; --i)
+      if (!falls(double(i) / kExposingSamples)) return false;
+    for (double part = 0.5 / kExposingSamples; part > kExposedNear; part /= 2)
+      if (!falls(part)) return false;
     moved.gap = largestGap(moved, sheets);
     return moved.gap <= atStart;
   };
+  // Away from both sheets: a reader that looks for curves of its own on them finds none that are closer.
+  const Eigen::Vector3d away =
+      (kExposedGap * piece.gap - atFirst) * normal(sides[0].sheet->jet(piece.onSheet[0].poles.front()));
   // The first pole is felt on the curve's first span; on a long one the gap grows before the move has faded.
   double span = piece.curve.knots[piece.curve.degree + 1] - first;
   for (int k = 0; k < kExposingSpans; ++k, span /= 2)
@@ -499,7 +506,7 @@ void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exa
       auto& poles = moved.curve.poles;
       const Eigen::Vector3d leg = poles[1] - poles[0];
       // The corner's foot on the curve stays in its end: readers of STEP start there.
-      poles[0] += way * aside + kExposedForward * aside.squaredNorm() / leg.squaredNorm() * leg;
+      poles[0] += way * away + kExposedForward * away.squaredNorm() / leg.squaredNorm() * leg;
       if (!isFarthest(moved, span)) continue;
       piece = std::move(moved);
       return;

@@ -76,9 +76,9 @@ std::optional<std::vector<TrimPiece>> sharedEdge(const IntersectionCurve& inters
                                                  const Progress& progress);
 
 /// Makes an edge with a gap between `exact` and `most` farthest from its sheets at its start, by moving its
-/// curve's first pole aside by a quarter more than its gap. STEP has no tolerances of edges: readers look for
-/// the distance at a few places, the ends among them, and take the edge for faulty if it is more between
-/// these, or follow it on the sheets by curves of their own, which are worse.
+/// curve's first pole away from them by a quarter more than its gap. STEP has no tolerances of edges: readers
+/// look for the distance at a few places, the ends among them, and take the edge for faulty if it is more
+/// between these, or follow it on the sheets by curves of their own, which are worse.
 void exposeGap(TrimPiece& piece, const std::vector<SheetSide>& sides, double exact, double most);
 
 /// Pieces of an edge on the first side's sheet, which the second sheet only touches within the gap: for

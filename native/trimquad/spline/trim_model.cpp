@@ -134,7 +134,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
   for (const auto& vertex : vertices_) result.vertices.push_back({vertex.point, kSmallestTolerance});
   std::map<const BoundaryRun*, std::vector<LoopPiece>> pieces;
   const auto addEdge = [&](const CurveEdge& added) {
-    const auto& [edge, sides, loose, strays] = added;
+    const auto& [edge, sides, strays] = added;
     if (strays)
       for (const auto* side : sides) result.strayRegions.insert(side->run->region);
     const BoundaryRun& first = *sides[0]->run;
@@ -147,7 +147,7 @@ SplineModel ModelTrimmer::trim(const std::vector<double>& tolerances) const {
       }
       const SplineEdgeId id{int(result.edges.size())};
       result.edges.push_back({edge[i].curve, start, end, std::max(kSmallestTolerance, 1.01 * edge[i].gap)});
-      if (loose && edge[i].gap > kLooseGap * model_.diagonal) {
+      if (sides.size() == 2 && edge[i].gap > kLooseGap * model_.diagonal) {
         ++result.looseEdges;
         for (const auto* side : sides) result.looseRegions.insert(side->run->region);
       }

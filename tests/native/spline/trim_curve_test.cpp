@@ -104,7 +104,7 @@ TEST(TrimCurve, ShowsItsGapAtItsStart) {
         const Eigen::Vector3d p = piece.curve.point(s);
         double largest = 0;
         for (const auto& x : piece.onSheet)
-          largest = std::max(largest, (p.head<2>() - scale * x.point(s)).norm());
+          largest = std::max(largest, std::hypot((p.head<2>() - scale * x.point(s)).norm(), p[2]));
         return largest;
       };
       EXPECT_GT(gapAt(0), 1.2 * gap);
