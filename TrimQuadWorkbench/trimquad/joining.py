@@ -174,8 +174,7 @@ def _refit_all(at_fault, result, progress):
         if item.error is None:
             continue
         if item.before_held:
-            item.fitted, item.refits, item.bisections, item.smoothings, item.fitted_in = item.before_held
-            item.holds_corners, item.before_held, item.error = False, None, None
+            vars(item).update(item.before_held, before_held=None, error=None)
         elif _fit_around_closer(item, result, progress):
             item.fitted, item.error = fitted, None
         else:
@@ -313,7 +312,8 @@ def _fit_again(item, way, result, progress):
         return False
     item.fitted_in = [*item.fitted_in, way]
     if way is HELD:
-        item.before_held = item.fitted, item.refits, item.bisections, item.smoothings, item.fitted_in
+        before = {name: getattr(item, name) for name in ("fitted", "refits", "bisections", "fitted_in", "holds_corners")}
+        item.before_held = {**before, "smoothings": dict(item.smoothings)}
     try:
         with progress.stage("fit", item.name) as native_progress:
             item.fitted = regions.fit(item, result, native_progress, **way)

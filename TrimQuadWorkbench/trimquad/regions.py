@@ -102,7 +102,7 @@ class RegionResult:
         self.may_be_divided = False  # along its sharp edges, as it failed
         self.cut_from = None
         self.holds_corners = False
-        self.before_held = None  # fit, refits, bisections, smoothings, fitted_in
+        self.before_held = None  # attributes as they were before corners were held
         self.fitted_in = []  # ways, arguments of fit(), in which it was fitted once more to suit others
         self.meetings = {}  # by region that its surfaces cross: CAD faces of both that meet without a common edge, or None
         self.left_out = None  # surfaces that could not be trimmed
