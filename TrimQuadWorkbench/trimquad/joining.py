@@ -100,14 +100,17 @@ def trim(result, progress):
         raise cancelled()
 
 
-def _refit_faulty(result, checks, faults, progress):
-    """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any. faults: method of FaceChecks"""
+def _refit_faulty(result, checks, find, progress):
+    """Fits regions again whose faces OpenCASCADE finds at fault. Whether there were any.
+
+    find: of `checks`, the FaceChecks: faults or likely_faults
+    """
     faulty = {}  # index of the region: charts and a fault
     faces = result.spline.faces
     folded = [r.fitted.folded_charts if r.fitted is not None else () for r in result.regions]
     folded_faces = [k for k, face in enumerate(faces) if face["chart"] in folded[face["region"]]]
     with progress.stage("check") as native_progress:
-        found = faults(result.spline, folded_faces, result.options.threads, native_progress)
+        found = find(result.spline, folded_faces, result.options.threads, native_progress)
         result.work_of_checks += native_progress.work
     for face, faults in zip(faces, found):
         if faults:

@@ -106,10 +106,7 @@ void bindBrep(py::module_& m) {
            "and with pairs of it and another one. Pairs with a face in `folded` (indices) and such as are "
            "bent against each other come first; the others where nothing is wrong so far.")
       .def("likely_faults", &FaceChecks::likelyFaults, py::arg("spline"), py::arg("folded"),
-           py::arg("threads"), py::arg("progress"), Released(),
-           "By face, its FaceFaults: what BRepCheck and the argument analysis of booleans find wrong with it "
-           "and with pairs of it and another one. Pairs with a face in `folded` (indices) and such as are "
-           "bent against each other come first; the others where nothing is wrong so far.")
+           py::arg("threads"), py::arg("progress"), Released(), "faults() without the pairs that come last.")
       .def("meeting_cad_faces", &FaceChecks::meetingCadFaces, py::arg("model"), py::arg("region_a"),
            py::arg("region_b"), py::arg("progress"), Released(),
            "MeetingFaces: two CAD faces, one of each region, that cross each other as they are, or else "
