@@ -1,8 +1,12 @@
 """Regions that are fitted again so that their surfaces suit those around them."""
+from contextlib import nullcontext
+from types import SimpleNamespace
+
 import pytest
 
 import trimquad
-from trimquad import joining
+from trimquad import joining, regions
+from trimquad.error import Error
 
 
 @pytest.fixture(scope="module")
@@ -42,3 +46,26 @@ def test_what_was_fitted_before_corners_were_held_is_taken_where_that_leads_nowh
     result = trimquad.convert(plate_with_boss, trimquad.Options(relative_tolerance=1e-3))
     assert len(held) == 1 and not held[0].holds_corners and joining.CLOSER in held[0].fitted_in
     assert result.failed == []
+
+
+def test_a_revision_that_cannot_be_trimmed_is_taken_back_before_the_next(monkeypatch):
+    before, crossed = SimpleNamespace(several=True), SimpleNamespace(several=True)
+    at_fault = Error("stage", "fit", "the fitted surface crosses that of face 2", "face 1")
+    item = regions.RegionResult(SimpleNamespace(name="face 1"))
+    item.fitted, item.before_revision = crossed, (before, {4}, at_fault)
+    item.refits = joining.REFITS.index(joining.REVISIONS[0]) + 1  # the revision that crossed
+    revised = []
+
+    def revise(item, charts, result, progress, smoother):
+        revised.append((item.fitted, charts, smoother))  # None is given: no such surfaces
+
+    monkeypatch.setattr(regions, "revised", revise)
+    monkeypatch.setattr(regions, "exhausted", lambda *_: True)  # nothing but revisions is left
+    monkeypatch.setattr(regions, "fit_over_another_map", lambda *_: False)
+    cannot_be_trimmed = Error("stage", "trim", "its edges cross", "face 1")
+    progress = SimpleNamespace(stage=lambda *_: nullcontext())
+    joining._refit(item, set(), cannot_be_trimmed, SimpleNamespace(exhausted=False), progress)
+
+    assert revised and all(fitted is before and charts == [4] for fitted, charts, _ in revised)
+    assert [smoother for *_, smoother in revised] == [way["smoother"] for way in joining.REVISIONS[1:]]
+    assert item.fitted is None and item.error is at_fault
